@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# A room is one directory under common/ and one static library, shoal::<room>. A file sees its own
+# room and the rooms that room links, and nothing else: an undeclared dependency does not compile.
+function(shoal_add_room)
+  cmake_parse_arguments(ROOM "" "NAME" "SOURCES;HEADERS;PUBLIC;PRIVATE" ${ARGN})
+  set(root ${PROJECT_BINARY_DIR}/rooms/${ROOM_NAME})
+  file(MAKE_DIRECTORY ${root}/shoal)
+  file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR} ${root}/shoal/${ROOM_NAME} SYMBOLIC)
+  if(NOT ROOM_SOURCES)  # bootstrap
+    file(WRITE ${root}/empty.cc "")
+    set(ROOM_SOURCES ${root}/empty.cc)
+  endif()
+  add_library(shoal_${ROOM_NAME} STATIC ${ROOM_SOURCES})
+  add_library(shoal::${ROOM_NAME} ALIAS shoal_${ROOM_NAME})
+  list(TRANSFORM ROOM_HEADERS PREPEND ${root}/shoal/${ROOM_NAME}/)
+  target_sources(shoal_${ROOM_NAME} PUBLIC FILE_SET HEADERS BASE_DIRS ${root} FILES ${ROOM_HEADERS})
+  target_link_libraries(shoal_${ROOM_NAME} PUBLIC ${ROOM_PUBLIC} shoal::base PRIVATE ${ROOM_PRIVATE})
+endfunction()
+
+# shoal_add_test(NAME matching SOURCES a_test.cc ... LINK shoal::matching ... [TIMEOUT s] [LABELS l]
+# [ENVIRONMENT K=V]): one executable of GoogleTest cases, each its own ctest entry with a time limit.
+function(shoal_add_test)
+  cmake_parse_arguments(TEST "" "NAME;TIMEOUT" "SOURCES;LINK;LABELS;ENVIRONMENT" ${ARGN})
+  if(NOT TEST_TIMEOUT)
+    set(TEST_TIMEOUT 60)
+  endif()
+  set(properties TIMEOUT ${TEST_TIMEOUT})
+  if(TEST_LABELS)
+    list(APPEND properties LABELS ${TEST_LABELS})
+  endif()
+  if(TEST_ENVIRONMENT)
+    list(APPEND properties ENVIRONMENT ${TEST_ENVIRONMENT})
+  endif()
+  add_executable(${TEST_NAME}_tests ${TEST_SOURCES})
+  target_link_libraries(${TEST_NAME}_tests PRIVATE ${TEST_LINK} shoal::base GTest::gtest_main)
+  gtest_discover_tests(${TEST_NAME}_tests DISCOVERY_MODE PRE_TEST TEST_PREFIX ${TEST_NAME}. PROPERTIES ${properties})
+endfunction()

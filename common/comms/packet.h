@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace shoal::comms {
+
+using Bytes = std::vector<uint8_t>;
+
+/// What a packet is for; the order is the order of utility per byte. Every class drains.
+enum class TrafficClass : uint8_t { kHeartbeat, kMatches, kTopics, kBricks, kCertainty, kLocal };
+inline constexpr size_t kNumTrafficClasses = 6;
+inline constexpr std::array<std::string_view, kNumTrafficClasses> kTrafficClassNames = {
+    "heartbeat", "matches", "topics", "bricks", "certainty", "local"};
+
+/// A message, opaque here: channel and encoded bytes.
+struct Packet {
+  std::string channel;
+  Bytes bytes;
+};
+
+/// A datagram's cost on the wire: payload, channel with its NUL, LCM's 8-byte header, UDP 8, IP 20.
+constexpr size_t wireSize(size_t channel_length, size_t payload) { return payload + channel_length + 1 + 8 + 28; }
+inline size_t wireSize(const Packet& packet) { return wireSize(packet.channel.size(), packet.bytes.size()); }
+
+/// No message is larger: LCM header, channel, NUL and payload together (DESIGN: every message <= 1400 bytes).
+inline constexpr size_t kMaxMessageBytes = 1400;
+
+}  // namespace shoal::comms

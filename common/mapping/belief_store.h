@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "shoal/mapping/piece.h"
+
+namespace shoal::mapping {
+
+/// What became of a piece offered to the store.
+enum class Applied {
+  kNew,        ///< the state changed
+  kDuplicate,  ///< known already
+  kOld,        ///< a newer version is held
+  kPending,    ///< of a newer version whose part 0 has not come yet
+  kConflict,   ///< same key, version and part, other content: two processes with one robot id. Kept out.
+  kRejected    ///< over a limit (too many robots or pieces). Kept out.
+};
+
+/// Caps that keep a hostile or broken peer from exhausting memory.
+struct StoreLimits {
+  int32_t max_robots = 256;
+  int64_t max_pieces_per_robot = 1'000'000;
+};
+
+/// The replicated state: a join of versioned pieces. For each key it holds the newest version whose part 0
+/// has been heard; parts of different versions never mix. The order in which pieces come, and how often, does
+/// not matter.
+class BeliefStore {
+ public:
+  explicit BeliefStore(StoreLimits limits = {}) : limits_(limits) {}
+
+  Applied apply(const Piece& piece);
+
+  /// Takes the usable parts of every piece, ascending by key, then part.
+  template <typename Visitor>
+  void visit(Visitor&& visitor) const {
+    for (const auto& [key, slot] : slots_)
+      for (const auto& [part, piece] : slot.parts) visitor(piece);
+  }
+
+  /// Robots that something is held of, ascending.
+  std::vector<world::RobotId> robots() const;
+
+  /// Digest of one robot's share of the state; 0 when nothing is held. A sum over parts, so a robot can keep
+  /// its own without keeping the parts in order.
+  uint64_t digestOf(world::RobotId robot) const;
+
+  /// Digest of the whole state. When and from whom things were heard does not enter.
+  uint64_t digest() const;
+
+  size_t numPieces() const { return slots_.size(); }
+
+ private:
+  struct Part {
+    Piece piece;
+    uint64_t hash = 0;
+  };
+  struct Slot {
+    world::Version version{-1, -1};     // of the usable parts
+    std::map<int32_t, Piece> parts;     // usable, by part number
+    std::map<world::Version, std::map<int32_t, Piece>> pending;  // newer, part 0 still lacking
+  };
+  struct RobotSum {
+    uint64_t digest = 0;
+    int64_t pieces = 0;
+  };
+  void makeUsable(const PieceKey& key, Slot& slot, world::Version version, std::map<int32_t, Piece> parts);
+
+  StoreLimits limits_;
+  std::map<PieceKey, Slot> slots_;
+  std::map<world::RobotId, RobotSum> sums_;
+};
+
+}  // namespace shoal::mapping

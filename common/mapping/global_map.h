@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "shoal/world/ids.h"
+
+namespace shoal::mapping {
+
+/// A cell of the fused map, as the robot that saw it last labels it.
+struct GlobalCell {
+  world::CellIndex cell;
+  world::GlobalLabel label{};
+  world::RobotId robot{};
+  world::Timestamp seen;
+  float certainty = 0;  ///< in [0, 1]; 0 while it has not been heard
+  bool operator==(const GlobalCell&) const = default;
+};
+
+/// "This robot's topic is that label."
+struct Correspondence {
+  world::RobotId robot{};
+  world::TopicId topic{};
+  world::GlobalLabel label{};
+  auto operator<=>(const Correspondence&) const = default;
+};
+
+/// A row of the legend.
+struct LabelSummary {
+  world::GlobalLabel label{};
+  std::string name;  ///< given by the operator, else empty
+  int64_t cells = 0;
+  std::vector<world::RobotId> robots;  ///< whose topics it joins, ascending
+  world::Timestamp first_seen;         ///< creation of its oldest topic
+  bool operator==(const LabelSummary&) const = default;
+};
+
+/// One consistent map of everything heard. A pure function of the replicated state and the fusion options.
+struct GlobalMap {
+  std::vector<GlobalCell> cells;                 ///< ascending by cell
+  std::vector<Correspondence> correspondences;   ///< ascending by robot, topic
+  std::vector<LabelSummary> labels;              ///< ascending by label; only those with cells
+  uint64_t state_digest = 0;                     ///< of the state it was made from
+
+  /// Digest of cells and correspondences.
+  uint64_t digest() const;
+};
+
+}  // namespace shoal::mapping

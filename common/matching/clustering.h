@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+namespace shoal::matching {
+
+/// What every matcher returns: a label per vertex.
+struct Clustering {
+  std::vector<int> label;  ///< per vertex, numbered by first appearance from 0
+  int num_labels = 0;      ///< labels in use
+  int universe = 0;        ///< labels the matcher made room for (CLEAR's m after the floor), >= num_labels
+};
+
+}  // namespace shoal::matching
