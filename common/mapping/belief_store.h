@@ -54,20 +54,16 @@ class BeliefStore {
   size_t numPieces() const { return slots_.size(); }
 
  private:
-  struct Part {
-    Piece piece;
-    uint64_t hash = 0;
-  };
   struct Slot {
-    world::Version version{-1, -1};     // of the usable parts
-    std::map<int32_t, Piece> parts;     // usable, by part number
+    world::Version version{-1, -1};                              // of the usable parts
+    std::map<int32_t, Piece> parts;                              // usable, by part number
     std::map<world::Version, std::map<int32_t, Piece>> pending;  // newer, part 0 still lacking
   };
   struct RobotSum {
     uint64_t digest = 0;
     int64_t pieces = 0;
   };
-  void makeUsable(const PieceKey& key, Slot& slot, world::Version version, std::map<int32_t, Piece> parts);
+  void promote(Slot& slot, world::Version version);
 
   StoreLimits limits_;
   std::map<PieceKey, Slot> slots_;

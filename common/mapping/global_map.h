@@ -39,10 +39,10 @@ struct LabelSummary {
 
 /// One consistent map of everything heard. A pure function of the replicated state and the fusion options.
 struct GlobalMap {
-  std::vector<GlobalCell> cells;                 ///< ascending by cell
-  std::vector<Correspondence> correspondences;   ///< ascending by robot, topic
-  std::vector<LabelSummary> labels;              ///< ascending by label; only those with cells
-  uint64_t state_digest = 0;                     ///< of the state it was made from
+  std::vector<GlobalCell> cells;                ///< ascending by cell
+  std::vector<Correspondence> correspondences;  ///< ascending by robot, topic
+  std::vector<LabelSummary> labels;             ///< ascending by label; only those with cells
+  uint64_t state_digest = 0;                    ///< of the state it was made from
 
   /// Digest of cells and correspondences.
   uint64_t digest() const;

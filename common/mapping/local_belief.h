@@ -31,10 +31,10 @@ struct BelievedCell {
 /// All that one robot believes at one moment: its topics and its labelled cells.
 struct LocalBelief {
   world::RobotId robot{};
-  world::Version version;               ///< of the latest observation in it
+  world::Version version;  ///< of the latest observation in it
   std::vector<world::WordGroup> groups;
-  std::vector<BelievedTopic> topics;    ///< ascending by id
-  std::vector<BelievedCell> cells;      ///< ascending by cell
+  std::vector<BelievedTopic> topics;  ///< ascending by id
+  std::vector<BelievedCell> cells;    ///< ascending by cell
 };
 
 /// A topic's counts as integers fit to travel: in each word group, counts are divided by a hundredth of the

@@ -28,15 +28,13 @@ struct PieceKey {
 inline constexpr int32_t kBrickEdge = 16;
 
 /// The brick that holds a cell: floor division by kBrickEdge.
-constexpr std::array<int32_t, 3> brickOf(const world::CellIndex& c) {
-  return {c.x >> 4, c.y >> 4, c.z >> 4};
-}
+constexpr std::array<int32_t, 3> brickOf(const world::CellIndex& c) { return {c.x >> 4, c.y >> 4, c.z >> 4}; }
 
 /// Some words of a topic's descriptor. Parts are cut by rank of probability mass: part 0 holds the heaviest
 /// words and is usable alone. Weights are quantised integers, see quantize().
 struct TopicPart {
   world::Timestamp created;          ///< mission time at which the topic was opened
-  int64_t weight = 0;                ///< words assigned to the whole topic, > 0
+  int64_t weight = 0;                ///< words assigned to the whole topic; 0 = retired, then no words
   std::vector<int32_t> group_sizes;  ///< sizes of the word groups, in id order; their sum is the vocabulary
   std::vector<world::WordCount> words;  ///< this part's words, ascending by word; counts quantised, > 0
   bool operator==(const TopicPart&) const = default;
@@ -44,9 +42,9 @@ struct TopicPart {
 
 /// A labelled cell as its robot last saw it.
 struct BrickCell {
-  world::CellIndex cell;    ///< absolute; inside the piece's brick
-  world::TopicId topic{};   ///< the robot's own topic
-  world::Timestamp seen;    ///< mission time of the last image that put words here
+  world::CellIndex cell;   ///< absolute; inside the piece's brick
+  world::TopicId topic{};  ///< the robot's own topic
+  world::Timestamp seen;   ///< mission time of the last image that put words here
   auto operator<=>(const BrickCell&) const = default;
 };
 

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "shoal/mapping/belief_pieces.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace shoal::mapping {
+
+std::vector<Piece> wholePieces(const LocalBelief& belief) {
+  std::vector<Piece> pieces;
+  std::vector<int32_t> group_sizes;
+  for (const world::WordGroup& group : belief.groups) group_sizes.push_back(group.size);
+  for (const BelievedTopic& topic : belief.topics) {
+    pieces.push_back({.key = {belief.robot, PieceKind::kTopic, {number(topic.id), 0, 0}},
+                      .version = belief.version,
+                      .content = TopicPart{topic.created, topic.weight, group_sizes,
+                                           quantize(topic.words, belief.groups)}});
+  }
+  std::map<std::array<int32_t, 3>, BrickPart> bricks;
+  std::map<std::array<int32_t, 3>, CertaintyPart> certainties;
+  for (const BelievedCell& c : belief.cells) {
+    const auto steps = static_cast<uint8_t>(std::lround(std::clamp(c.certainty, 0.f, 1.f) * kCertaintySteps));
+    bricks[brickOf(c.cell)].cells.push_back({c.cell, c.topic, c.seen});
+    certainties[brickOf(c.cell)].cells.push_back({c.cell, steps});
+  }
+  for (auto& [index, part] : bricks) {
+    pieces.push_back({.key = {belief.robot, PieceKind::kBrick, index},
+                      .version = belief.version,
+                      .content = std::move(part)});
+  }
+  for (auto& [index, part] : certainties) {
+    pieces.push_back({.key = {belief.robot, PieceKind::kCertainty, index},
+                      .version = belief.version,
+                      .content = std::move(part)});
+  }
+  return pieces;
+}
+
+std::vector<Piece> BeliefChanges::update(const LocalBelief& belief) {
+  std::vector<Piece> changed;
+  std::map<PieceKey, uint64_t> now;
+  for (Piece& piece : wholePieces(belief)) {
+    Piece unversioned = piece;
+    unversioned.version = {};
+    const uint64_t hash = contentHash(unversioned);
+    const auto before = content_hash_.find(piece.key);
+    now.emplace(piece.key, hash);
+    if (before == content_hash_.end() || before->second != hash) changed.push_back(std::move(piece));
+  }
+  for (const auto& [key, hash] : content_hash_) {
+    if (key.kind != PieceKind::kTopic || now.contains(key)) continue;
+    now.emplace(key, 0);
+    if (hash == 0) continue;  // retired already
+    changed.push_back({.key = key, .version = belief.version, .content = TopicPart{}});
+  }
+  std::ranges::sort(changed, {}, &Piece::key);
+  content_hash_ = std::move(now);
+  return changed;
+}
+
+}  // namespace shoal::mapping

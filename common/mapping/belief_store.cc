@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "shoal/mapping/belief_store.h"
+
+#include "shoal/random.h"
+
+namespace shoal::mapping {
+namespace {
+
+// Versions that wait for their part 0. More than a few means a peer that never sends it.
+constexpr size_t kMaxPendingVersions = 8;
+
+}  // namespace
+
+Applied BeliefStore::apply(const Piece& piece) {
+  const world::RobotId robot = piece.key.robot;
+  auto sum = sums_.find(robot);
+  if (sum == sums_.end()) {
+    if (std::ssize(sums_) >= limits_.max_robots) return Applied::kRejected;
+    sum = sums_.emplace(robot, RobotSum{}).first;
+  }
+  auto found = slots_.find(piece.key);
+  if (found == slots_.end()) {
+    if (sum->second.pieces >= limits_.max_pieces_per_robot) return Applied::kRejected;
+    ++sum->second.pieces;
+    found = slots_.emplace(piece.key, Slot{}).first;
+  }
+  Slot& slot = found->second;
+  if (piece.version < slot.version) return Applied::kOld;
+
+  auto& parts = piece.version == slot.version ? slot.parts : slot.pending[piece.version];
+  const auto [held, inserted] = parts.emplace(piece.part, piece);
+  if (!inserted) return held->second == piece ? Applied::kDuplicate : Applied::kConflict;
+  if (!parts.empty() && parts.begin()->second.num_parts != piece.num_parts) {
+    parts.erase(held);
+    return Applied::kConflict;
+  }
+  if (piece.version == slot.version) {
+    sum->second.digest += contentHash(piece);
+    return Applied::kNew;
+  }
+  if (piece.part != 0) {
+    if (slot.pending.size() > kMaxPendingVersions) slot.pending.erase(slot.pending.begin());
+    return Applied::kPending;
+  }
+  promote(slot, piece.version);
+  return Applied::kNew;
+}
+
+// Part 0 of a newer version has come: it is what the slot now holds, and all that is older goes.
+void BeliefStore::promote(Slot& slot, world::Version version) {
+  const auto newer = slot.pending.find(version);
+  RobotSum& sum = sums_.at(newer->second.begin()->second.key.robot);
+  for (const auto& [part, piece] : slot.parts) sum.digest -= contentHash(piece);
+  slot.version = version;
+  slot.parts = std::move(newer->second);
+  for (const auto& [part, piece] : slot.parts) sum.digest += contentHash(piece);
+  slot.pending.erase(slot.pending.begin(), slot.pending.upper_bound(version));
+}
+
+std::vector<world::RobotId> BeliefStore::robots() const {
+  std::vector<world::RobotId> robots;
+  for (const auto& [robot, sum] : sums_) robots.push_back(robot);
+  return robots;
+}
+
+uint64_t BeliefStore::digestOf(world::RobotId robot) const {
+  const auto sum = sums_.find(robot);
+  return sum == sums_.end() ? 0 : sum->second.digest;
+}
+
+uint64_t BeliefStore::digest() const {
+  uint64_t digest = 0;
+  for (const auto& [robot, sum] : sums_) {
+    if (sum.digest == 0) continue;  // nothing usable yet
+    digest = hashCombine(hashCombine(digest, static_cast<uint64_t>(number(robot))), sum.digest);
+  }
+  return digest;
+}
+
+}  // namespace shoal::mapping

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "shoal/mapping/stacked_topics.h"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <set>
+
+namespace shoal::mapping {
+namespace {
+
+using TopicKey = std::pair<world::RobotId, world::TopicId>;
+
+// The layout of word groups that most robots use; the first robot's among equals.
+std::vector<int32_t> commonLayout(const std::vector<HeardTopic>& topics) {
+  std::vector<std::pair<std::vector<int32_t>, std::set<world::RobotId>>> users;
+  for (const HeardTopic& topic : topics) {
+    auto known = std::ranges::find(users, topic.group_sizes, [](const auto& u) { return u.first; });
+    if (known == users.end()) known = users.insert(users.end(), {topic.group_sizes, {}});
+    known->second.insert(topic.robot);
+  }
+  const auto most = std::ranges::max_element(users, {}, [](const auto& u) { return u.second.size(); });
+  return most == users.end() ? std::vector<int32_t>{} : most->first;
+}
+
+}  // namespace
+
+StackedTopics stack(const BeliefStore& beliefs) {
+  std::map<TopicKey, HeardTopic> heard;
+  std::map<TopicKey, int64_t> cells;
+  beliefs.visit([&](const Piece& piece) {
+    if (const auto* part = std::get_if<TopicPart>(&piece.content)) {
+      if (part->weight <= 0) return;
+      const world::TopicId id{piece.key.index[0]};
+      HeardTopic& topic = heard[{piece.key.robot, id}];
+      topic.robot = piece.key.robot;
+      topic.id = id;
+      topic.created = part->created;
+      topic.weight = part->weight;
+      topic.group_sizes = part->group_sizes;
+      topic.words.insert(topic.words.end(), part->words.begin(), part->words.end());
+    } else if (const auto* brick = std::get_if<BrickPart>(&piece.content)) {
+      for (const BrickCell& c : brick->cells) ++cells[{piece.key.robot, c.topic}];
+    }
+  });
+
+  StackedTopics stacked;
+  for (auto& [key, topic] : heard) {
+    std::ranges::sort(topic.words);
+    topic.cells = cells.contains(key) ? cells.at(key) : 0;
+    stacked.topics.push_back(std::move(topic));
+  }
+  const std::vector<int32_t> layout = commonLayout(stacked.topics);
+  matching::DescriptorSet& set = stacked.descriptors;
+  set.vocabulary_size = std::reduce(layout.begin(), layout.end());
+  for (int32_t first = 0; const int32_t size : layout) {
+    set.group_first.push_back(first);
+    first += size;
+  }
+  const world::RobotId* last = nullptr;
+  int32_t next_vertex = 0;
+  for (const HeardTopic& topic : stacked.topics) {
+    const bool takes_part = topic.cells > 0 && topic.group_sizes == layout;
+    stacked.vertex.push_back(takes_part ? next_vertex++ : -1);
+    if (!takes_part) continue;
+    if (last == nullptr || *last != topic.robot) set.robots.emplace_back();
+    last = &topic.robot;
+    matching::Descriptor descriptor{.slot = number(topic.id), .entries = {}};
+    for (const auto& [word, count] : topic.words) descriptor.entries.push_back({word, count});
+    set.robots.back().push_back(std::move(descriptor));
+  }
+  return stacked;
+}
+
+}  // namespace shoal::mapping

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "shoal/mapping/belief_store.h"
+#include "shoal/matching/descriptors.h"
+
+namespace shoal::mapping {
+
+/// A topic as it was heard, its parts put together.
+struct HeardTopic {
+  world::RobotId robot{};
+  world::TopicId id{};
+  world::Timestamp created;
+  int64_t weight = 0;
+  int64_t cells = 0;  ///< cells of its robot's map that carry it
+  std::vector<int32_t> group_sizes;
+  std::vector<world::WordCount> words;  ///< ascending by word
+};
+
+/// The topics of all robots in canonical order (robot number, topic id), whatever arrived first.
+struct StackedTopics {
+  std::vector<HeardTopic> topics;       ///< all with weight > 0
+  std::vector<int32_t> vertex;          ///< per topic: its vertex among `descriptors`, or -1
+  matching::DescriptorSet descriptors;  ///< the topics that take part in matching
+};
+
+/// Puts the heard topics together and picks those that take part in matching: they label at least one cell
+/// and were learned with the vocabulary layout that most robots share (ties go to the layout of the lowest
+/// robot). Others keep a label of their own.
+StackedTopics stack(const BeliefStore& beliefs);
+
+}  // namespace shoal::mapping
