@@ -28,12 +28,9 @@ Applied BeliefStore::apply(const Piece& piece) {
   if (piece.version < slot.version) return Applied::kOld;
 
   auto& parts = piece.version == slot.version ? slot.parts : slot.pending[piece.version];
+  if (!parts.empty() && parts.begin()->second.num_parts != piece.num_parts) return Applied::kConflict;
   const auto [held, inserted] = parts.emplace(piece.part, piece);
   if (!inserted) return held->second == piece ? Applied::kDuplicate : Applied::kConflict;
-  if (!parts.empty() && parts.begin()->second.num_parts != piece.num_parts) {
-    parts.erase(held);
-    return Applied::kConflict;
-  }
   if (piece.version == slot.version) {
     sum->second.digest += contentHash(piece);
     return Applied::kNew;

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "shoal/mapping/belief_files.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "shoal/mapping/atomic_file.h"
+#include "shoal/mapping/csv.h"
+
+namespace shoal::mapping {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const std::vector<std::string> kColumns = {"x_m", "y_m", "z_m", "topic", "seen_s", "certainty"};
+
+world::Timestamp fromSeconds(double seconds) { return {std::llround(seconds * 1e3) * 1000}; }
+
+std::string topicsJson(const LocalBelief& belief) {
+  Json json;
+  json["vocabulary"] = belief.groups.empty() ? 0 : belief.groups.back().first + belief.groups.back().size;
+  json["groups"] = Json::array();
+  for (const world::WordGroup& g : belief.groups) {
+    json["groups"].push_back({{"name", g.name}, {"first", g.first}, {"size", g.size}});
+  }
+  json["topics"] = Json::array();
+  for (const BelievedTopic& topic : belief.topics) {
+    Json words = Json::object();
+    for (const auto& [word, count] : topic.words) words[std::to_string(word)] = count;
+    json["topics"].push_back({{"id", number(topic.id)},
+                              {"weight", topic.weight},
+                              {"created_s", topic.created.seconds()},
+                              {"words", std::move(words)}});
+  }
+  return json.dump() + "\n";
+}
+
+void readTopics(const Json& json, LocalBelief& belief) {
+  for (const Json& g : json.at("groups")) {
+    belief.groups.push_back({g.at("name"), g.at("first"), g.at("size")});
+  }
+  for (const Json& t : json.at("topics")) {
+    BelievedTopic topic{.id = world::TopicId{t.at("id").get<int32_t>()},
+                        .created = fromSeconds(t.value("created_s", 0.0)),
+                        .weight = t.at("weight"),
+                        .words = {}};
+    for (const auto& [word, count] : t.at("words").items()) {
+      topic.words.push_back({static_cast<int32_t>(std::stol(word)), count.get<int32_t>()});
+    }
+    std::ranges::sort(topic.words);
+    belief.topics.push_back(std::move(topic));
+  }
+  std::ranges::sort(belief.topics, {}, &BelievedTopic::id);
+}
+
+}  // namespace
+
+void writeBelief(const std::string& folder, const LocalBelief& belief, const world::Grid& grid) {
+  std::string csv = "x_m,y_m,z_m,topic,seen_s,certainty\n";
+  for (const BelievedCell& c : belief.cells) {
+    const Eigen::Vector3d p = grid.centerOf(c.cell);
+    csv += fixed(p.x(), 3) + ',' + fixed(p.y(), 3) + ',' + fixed(p.z(), 3) + ',' +
+           std::to_string(number(c.topic)) + ',' + fixed(c.seen.seconds(), 3) + ',' + fixed(c.certainty, 4) +
+           '\n';
+  }
+  writeFileAtomically(folder + "/map.csv", csv);
+  writeFileAtomically(folder + "/topics.json", topicsJson(belief));
+}
+
+LocalBelief readBelief(const std::string& folder, world::RobotId robot, const world::Grid& grid) {
+  LocalBelief belief{.robot = robot, .version = {}, .groups = {}, .topics = {}, .cells = {}};
+  const std::string topics = folder + "/topics.json";
+  try {
+    readTopics(Json::parse(readFile(topics)), belief);
+  } catch (const Json::exception& error) {
+    throw std::runtime_error(topics + ": " + error.what());
+  } catch (const std::logic_error&) {
+    throw std::runtime_error(topics + ": the keys of \"words\" must be word numbers");
+  }
+  const std::string map = folder + "/map.csv";
+  for (const auto& row : parseCsv(readFile(map), kColumns, map)) {
+    belief.cells.push_back({grid.cellOf({toReal(row[0], map), toReal(row[1], map), toReal(row[2], map)}),
+                            world::TopicId{static_cast<int32_t>(toInteger(row[3], map))},
+                            fromSeconds(toReal(row[4], map)), static_cast<float>(toReal(row[5], map))});
+  }
+  std::ranges::sort(belief.cells, {}, &BelievedCell::cell);
+  return belief;
+}
+
+}  // namespace shoal::mapping

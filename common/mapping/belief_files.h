@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "shoal/mapping/local_belief.h"
+#include "shoal/world/grid.h"
+
+namespace shoal::mapping {
+
+/// Writes `FOLDER/map.csv` (x_m,y_m,z_m,topic,seen_s,certainty) and `FOLDER/topics.json` (exact counts).
+/// @throws std::runtime_error naming the file that cannot be written.
+void writeBelief(const std::string& folder, const LocalBelief& belief, const world::Grid& grid);
+
+/// Reads what writeBelief() wrote; seconds come back to the millisecond.
+/// @throws std::runtime_error naming the file and what is wrong with it.
+LocalBelief readBelief(const std::string& folder, world::RobotId robot, const world::Grid& grid);
+
+}  // namespace shoal::mapping

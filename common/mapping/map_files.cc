@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "shoal/mapping/map_files.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+
+#include "shoal/mapping/atomic_file.h"
+#include "shoal/mapping/csv.h"
+
+namespace shoal::mapping {
+namespace {
+
+const std::vector<std::string> kMapColumns = {"x_m", "y_m", "z_m", "label", "robot", "seen_s", "certainty"};
+const std::vector<std::string> kLabelColumns = {"label",   "name",   "cells",
+                                                "area_m2", "robots", "first_seen_s"};
+
+world::Timestamp fromSeconds(double seconds) { return {std::llround(seconds * 1e3) * 1000}; }
+
+world::RobotId toRobot(const std::string& field, const std::string& path) {
+  const auto robot = world::parseRobotId(field);
+  if (!robot) throw std::runtime_error(path + ": \"" + field + "\" is not a robot; robots are R00, R01, ...");
+  return *robot;
+}
+
+}  // namespace
+
+std::map<world::GlobalLabel, double> areas(const GlobalMap& map, const world::Grid& grid) {
+  std::map<world::GlobalLabel, std::set<std::pair<int32_t, int32_t>>> columns;
+  for (const GlobalCell& c : map.cells) columns[c.label].emplace(c.cell.x, c.cell.y);
+  std::map<world::GlobalLabel, double> areas;
+  for (const auto& [label, cells] : columns) {
+    areas[label] = static_cast<double>(cells.size()) * grid.cellSize() * grid.cellSize();
+  }
+  return areas;
+}
+
+std::string globalMapCsv(const GlobalMap& map, const world::Grid& grid) {
+  std::string csv = "x_m,y_m,z_m,label,robot,seen_s,certainty\n";
+  for (const GlobalCell& c : map.cells) {
+    const Eigen::Vector3d p = grid.centerOf(c.cell);
+    csv += fixed(p.x(), 3) + ',' + fixed(p.y(), 3) + ',' + fixed(p.z(), 3) + ',' +
+           std::to_string(number(c.label)) + ',' + name(c.robot) + ',' + fixed(c.seen.seconds(), 3) + ',' +
+           fixed(c.certainty, 4) + '\n';
+  }
+  return csv;
+}
+
+std::string labelsCsv(const GlobalMap& map, const world::Grid& grid) {
+  const auto area = areas(map, grid);
+  std::string csv = "label,name,cells,area_m2,robots,first_seen_s\n";
+  for (const LabelSummary& row : map.labels) {
+    std::string robots;
+    for (const world::RobotId robot : row.robots) robots += (robots.empty() ? "" : ";") + name(robot);
+    csv += std::to_string(number(row.label)) + ',' + quoted(row.name) + ',' + std::to_string(row.cells) +
+           ',' + fixed(area.at(row.label), 3) + ',' + robots + ',' + fixed(row.first_seen.seconds(), 3) +
+           '\n';
+  }
+  return csv;
+}
+
+GlobalMap readGlobalMap(const std::string& folder, const world::Grid& grid) {
+  GlobalMap map;
+  const std::string cells = folder + "/global_map.csv";
+  for (const auto& row : parseCsv(readFile(cells), kMapColumns, cells)) {
+    map.cells.push_back({grid.cellOf({toReal(row[0], cells), toReal(row[1], cells), toReal(row[2], cells)}),
+                         world::GlobalLabel{static_cast<int32_t>(toInteger(row[3], cells))},
+                         toRobot(row[4], cells), fromSeconds(toReal(row[5], cells)),
+                         static_cast<float>(toReal(row[6], cells))});
+  }
+  std::ranges::sort(map.cells, {}, &GlobalCell::cell);
+  const std::string labels = folder + "/labels.csv";
+  for (const auto& row : parseCsv(readFile(labels), kLabelColumns, labels)) {
+    LabelSummary summary{.label = world::GlobalLabel{static_cast<int32_t>(toInteger(row[0], labels))},
+                         .name = row[1],
+                         .cells = toInteger(row[2], labels),
+                         .robots = {},
+                         .first_seen = fromSeconds(toReal(row[5], labels))};
+    std::istringstream robots(row[4]);
+    for (std::string robot; std::getline(robots, robot, ';');)
+      summary.robots.push_back(toRobot(robot, labels));
+    map.labels.push_back(std::move(summary));
+  }
+  return map;
+}
+
+}  // namespace shoal::mapping

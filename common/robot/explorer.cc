@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "shoal/robot/explorer.h"
+
+#include <bit>
+#include <chrono>
+
+#include "shoal/demand.h"
+#include "shoal/random.h"
+#include "shoal/robot/profile.h"
+
+namespace shoal::robot {
+namespace {
+
+class Stopwatch {
+ public:
+  double lapMs() {
+    const auto now = Clock::now();
+    const double ms = std::chrono::duration<double, std::milli>(now - start_).count();
+    start_ = now;
+    return ms;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point start_ = Clock::now();
+};
+
+}  // namespace
+
+Explorer::Explorer(const ExplorerOptions& options)
+    : options_(options),
+      words_(vision::makeWordExtractor(options.profile)),
+      grid_(options.cell_size_m),
+      hyperparameters_(hyperparametersOf(options.profile)),
+      model_(hyperparameters_, words_->vocabularySize(), options.seed, options.robot) {}
+
+void Explorer::observe(const world::Observation& observation) {
+  SHOAL_DEMAND(observation.number > last_observation_);
+  Stopwatch watch;
+  const world::WordsInCells words = words_->extract(observation, grid_);
+  times_.words_ms = watch.lapMs();
+  model_.observe(words);
+  times_.topics_ms = watch.lapMs();
+  last_observation_ = observation.number;
+  dropped_words_ += words.dropped_words;
+}
+
+mapping::LocalBelief Explorer::belief() const {
+  Stopwatch watch;
+  topics::Snapshot snapshot = model_.snapshot();
+  mapping::LocalBelief belief{.robot = options_.robot,
+                              .version = {options_.epoch, last_observation_},
+                              .groups = words_->groups(),
+                              .topics = {},
+                              .cells = {}};
+  for (topics::TopicCounts& topic : snapshot.topics) {
+    belief.topics.push_back({topic.id, topic.created, topic.weight, std::move(topic.words)});
+  }
+  belief.cells.reserve(snapshot.cells.size());
+  for (const topics::CellLabel& c : snapshot.cells) {
+    belief.cells.push_back({c.cell, c.topic, c.seen, c.certainty});
+  }
+  times_.belief_ms = watch.lapMs();
+  return belief;
+}
+
+uint64_t Explorer::fingerprint() const {
+  uint64_t hash = words_->fingerprint();
+  const auto add = [&hash](uint64_t value) { hash = hashCombine(hash, value); };
+  const auto addReal = [&add](double value) { add(std::bit_cast<uint64_t>(value)); };
+  const topics::Hyperparameters& h = hyperparameters_;
+  addReal(options_.cell_size_m);
+  add(static_cast<uint64_t>(h.max_topics));
+  for (const double value : {h.alpha, h.beta, h.gamma, h.neighbor_weight, h.tau, h.local_rate})
+    addReal(value);
+  add(static_cast<uint64_t>(h.resamples_per_observation));
+  return hash;
+}
+
+}  // namespace shoal::robot

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "shoal/mapping/local_belief.h"
+#include "shoal/topics/hyperparameters.h"
+#include "shoal/topics/topic_model.h"
+#include "shoal/vision/word_extractor.h"
+#include "shoal/world/grid.h"
+#include "shoal/world/observation.h"
+
+namespace shoal::robot {
+
+/// What makes an explorer. All of it changes what it learns.
+struct ExplorerOptions {
+  world::RobotId robot{};
+  std::string profile = "paper";  ///< words and hyper-parameters
+  uint64_t seed = 1;              ///< mission seed
+  double cell_size_m = 0.8;       ///< edge of a cell, > 0
+  int32_t epoch = 0;              ///< grows when the robot has lost its disk
+};
+
+/// Milliseconds that the last observation took, by stage.
+struct StageTimes {
+  double words_ms = 0, topics_ms = 0, belief_ms = 0;
+  double total() const { return words_ms + topics_ms + belief_ms; }
+};
+
+/// One robot's mind: takes observations, learns topics, hands out what it believes. The process and the
+/// in-process experiments run this same code.
+class Explorer {
+ public:
+  /// @throws std::invalid_argument for a profile that is not built or a cell size that is not > 0.
+  explicit Explorer(const ExplorerOptions& options);
+
+  /// Learns from one image. Observations come in order of their numbers. The belief is a pure function of the
+  /// options and of the observations so far.
+  void observe(const world::Observation& observation);
+
+  /// What the robot believes now.
+  mapping::LocalBelief belief() const;
+
+  const std::vector<world::WordGroup>& groups() const { return words_->groups(); }
+  /// Identifies words and hyper-parameters: only robots with equal fingerprints are comparable.
+  uint64_t fingerprint() const;
+  int64_t droppedWords() const { return dropped_words_; }
+  const StageTimes& lastTimes() const { return times_; }
+
+ private:
+  ExplorerOptions options_;
+  std::unique_ptr<vision::WordExtractor> words_;
+  world::Grid grid_;
+  topics::Hyperparameters hyperparameters_;
+  topics::TopicModel model_;
+  int32_t last_observation_ = -1;
+  int64_t dropped_words_ = 0;
+  mutable StageTimes times_;  // measured, never part of a result
+};
+
+}  // namespace shoal::robot
