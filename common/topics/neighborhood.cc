@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "shoal/topics/neighborhood.h"
+
+#include <limits>
+
+#include "shoal/demand.h"
+
+namespace shoal::topics {
+namespace {
+
+// One step along an axis, or the cell itself where the axis ends.
+int32_t step(int32_t coordinate, int32_t direction) {
+  const int64_t next = int64_t{coordinate} + direction;
+  const bool inside =
+      next >= std::numeric_limits<int32_t>::min() && next <= std::numeric_limits<int32_t>::max();
+  return inside ? static_cast<int32_t>(next) : coordinate;
+}
+
+}  // namespace
+
+int32_t Neighborhood::insert(const world::CellIndex& cell) {
+  const auto [entry, is_new] = number_of_.try_emplace(cell, size());
+  const int32_t number = entry->second;
+  if (!is_new) return number;
+  links_.emplace_back();
+  for (const int32_t direction : {-1, 1}) {
+    for (const world::CellIndex& other : {world::CellIndex{step(cell.x, direction), cell.y, cell.z},
+                                          world::CellIndex{cell.x, step(cell.y, direction), cell.z},
+                                          world::CellIndex{cell.x, cell.y, step(cell.z, direction)}}) {
+      const auto found = number_of_.find(other);
+      if (found == number_of_.end() || found->second == number) continue;
+      link(number, found->second);
+      link(found->second, number);
+    }
+  }
+  return number;
+}
+
+std::span<const int32_t> Neighborhood::of(int32_t cell) const {
+  const Links& links = links_[static_cast<size_t>(cell)];
+  return {links.cells.data(), static_cast<size_t>(links.count)};
+}
+
+void Neighborhood::link(int32_t a, int32_t b) {
+  Links& links = links_[static_cast<size_t>(a)];
+  SHOAL_DEMAND(links.count < 6);
+  links.cells[static_cast<size_t>(links.count++)] = b;
+}
+
+}  // namespace shoal::topics

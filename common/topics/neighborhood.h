@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "shoal/world/ids.h"
+
+namespace shoal::topics {
+
+/// Which cells adjoin: the faces of a cube, at most 6, no diagonals; time is one bin (static world).
+///
+/// Cells are numbered in order of creation, which is order of first sight; numbers never change. Links go
+/// both ways as soon as both cells exist. Constant time per cell, whatever the size of the map.
+///
+/// Source: ROST's von Neumann neighbourhood with depth G = 1, as in S. Jamieson et al. 2021.
+class Neighborhood {
+ public:
+  /// Number of the cell, created and linked if it is new.
+  int32_t insert(const world::CellIndex& cell);
+
+  int32_t size() const { return static_cast<int32_t>(links_.size()); }
+
+  /// Numbers of the adjoining cells, in order of their creation or the cell's own, whichever came later.
+  std::span<const int32_t> of(int32_t cell) const;
+
+ private:
+  struct Links {
+    std::array<int32_t, 6> cells;
+    int32_t count = 0;
+  };
+
+  void link(int32_t a, int32_t b);
+
+  std::unordered_map<world::CellIndex, int32_t, world::CellHash> number_of_;  // looked up, never iterated
+  std::vector<Links> links_;
+};
+
+}  // namespace shoal::topics

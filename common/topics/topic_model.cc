@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "shoal/topics/topic_model.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include "shoal/topics/schedule.h"
+
+namespace shoal::topics {
+namespace {
+
+// Streams of their own, so that no other room that is given the same mission seed draws the same numbers.
+constexpr uint64_t kCellStream = 0x746f706963730001;      // "topics", 1
+constexpr uint64_t kScheduleStream = 0x746f706963730002;  // "topics", 2
+
+}  // namespace
+
+TopicModel::TopicModel(const Hyperparameters& hyperparameters, int32_t vocabulary_size, uint64_t seed,
+                       world::RobotId robot)
+    : hyperparameters_(hyperparameters),
+      seed_(seed),
+      robot_(static_cast<uint64_t>(number(robot))),
+      gibbs_(hyperparameters, vocabulary_size),
+      neighbor_counts_(static_cast<size_t>(gibbs_.stride())) {}
+
+void TopicModel::observe(const world::WordsInCells& words) {
+  add(words);
+  refine(hyperparameters_.resamples_per_observation);
+}
+
+void TopicModel::add(const world::WordsInCells& words) {
+  check(words, gibbs_.vocabularySize());
+  if (words.observation <= observation_) {
+    throw std::invalid_argument("observation numbers must ascend from 0, got " +
+                                std::to_string(words.observation) + " after " + std::to_string(observation_));
+  }
+  observation_ = words.observation;
+  time_ = words.time;
+  latest_.clear();
+  const int32_t num_known = numCells();
+  for (const world::CellWords& cell_words : words.cells) {
+    const int32_t c = cellFor(cell_words.cell);
+    latest_.push_back(c);
+    Cell& cell = cells_[static_cast<size_t>(c)];
+    cell.seen_observation = observation_;
+    cell.seen = time_;
+    const std::vector<Token> fresh = tokens(cell_words);
+    const auto first = static_cast<ptrdiff_t>(cell.tokens.size());
+    cell.tokens.insert(cell.tokens.end(), fresh.begin(), fresh.end());
+    gatherNeighbors(c, neighbor_counts_);
+    gibbs_.assign({cell.tokens.begin() + first, cell.tokens.end()}, countsOf(c), neighbor_counts_,
+                  nextRandom(c));
+  }
+  for (int32_t c = num_known; c < numCells(); ++c) visit(c);
+  gibbs_.nameTopics(time_);
+}
+
+void TopicModel::refine(int64_t resamples) {
+  if (resamples < 0) {
+    throw std::invalid_argument("resamples must be at least 0, got " + std::to_string(resamples));
+  }
+  if (cells_.empty()) return;
+  const int64_t start = num_resamples_;
+  const int64_t budget = resamples - overrun_;
+  while (num_resamples_ - start < budget) {
+    Random random(seed_, kScheduleStream, robot_, num_visits_++);
+    visit(nextVisit(hyperparameters_, latest_, numCells(), random));
+  }
+  overrun_ = num_resamples_ - start - budget;
+  gibbs_.nameTopics(time_);
+}
+
+Snapshot TopicModel::snapshot() const {
+  Snapshot snapshot{gibbs_.vocabularySize(), topics(), {}};
+  snapshot.cells.reserve(cells_.size());
+  std::vector<double> neighbor_counts(neighbor_counts_.size());
+  for (int32_t c = 0; c < numCells(); ++c) snapshot.cells.push_back(label(c, neighbor_counts));
+  std::ranges::sort(snapshot.cells, {}, &CellLabel::cell);
+  return snapshot;
+}
+
+int32_t TopicModel::cellFor(const world::CellIndex& index) {
+  const int32_t c = neighborhood_.insert(index);
+  if (static_cast<size_t>(c) == cells_.size()) {
+    cells_.push_back({.index = index, .tokens = {}, .seen = {}});
+    cell_counts_.resize(cell_counts_.size() + static_cast<size_t>(gibbs_.stride()));
+  }
+  return c;
+}
+
+void TopicModel::visit(int32_t c) {
+  Cell& cell = cells_[static_cast<size_t>(c)];
+  gatherNeighbors(c, neighbor_counts_);
+  gibbs_.resample(cell.tokens, countsOf(c), neighbor_counts_, nextRandom(c));
+  num_resamples_ += static_cast<int64_t>(cell.tokens.size());
+}
+
+Random TopicModel::nextRandom(int32_t c) {
+  const uint64_t draw = cells_[static_cast<size_t>(c)].num_draws++;
+  return Random(hashCombine(seed_, kCellStream), robot_, static_cast<uint64_t>(c), draw);
+}
+
+void TopicModel::gatherNeighbors(int32_t c, std::span<double> counts) const {
+  std::ranges::fill(counts, 0.0);
+  if (hyperparameters_.neighbor_weight == 0.0) return;
+  for (const int32_t neighbor : neighborhood_.of(c)) {
+    const std::span<const int32_t> its = countsOf(neighbor);
+    for (size_t k = 0; k < counts.size(); ++k) counts[k] += its[k];
+  }
+  for (double& count : counts) count *= hyperparameters_.neighbor_weight;
+}
+
+std::span<int32_t> TopicModel::countsOf(int32_t c) {
+  const auto stride = static_cast<size_t>(gibbs_.stride());
+  return std::span(cell_counts_).subspan(static_cast<size_t>(c) * stride, stride);
+}
+
+std::span<const int32_t> TopicModel::countsOf(int32_t c) const {
+  const auto stride = static_cast<size_t>(gibbs_.stride());
+  return std::span(cell_counts_).subspan(static_cast<size_t>(c) * stride, stride);
+}
+
+CellLabel TopicModel::label(int32_t c, std::span<double> neighbor_counts) const {
+  const TopicSlots& slots = gibbs_.slots();
+  const std::span<const int32_t> counts = countsOf(c);
+  gatherNeighbors(c, neighbor_counts);
+  const double alpha = hyperparameters_.alpha;
+  const int32_t num_options = hyperparameters_.gamma == 0.0 ? slots.size() : slots.numOpen();
+  double mass = alpha * num_options;
+  int32_t best = -1;
+  for (int32_t k = 0; k < slots.end(); ++k) {
+    const auto i = static_cast<size_t>(k);
+    mass += counts[i] + neighbor_counts[i];
+    if (!slots.isOpen(k)) continue;
+    const int32_t lead = best < 0 ? 1 : counts[i] - counts[static_cast<size_t>(best)];
+    if (lead > 0 || (lead == 0 && slots.id(k) < slots.id(best))) best = k;
+  }
+  const auto b = static_cast<size_t>(best);
+  const double certainty = (counts[b] + neighbor_counts[b] + alpha) / mass;
+  const Cell& cell = cells_[static_cast<size_t>(c)];
+  return {cell.index, slots.id(best), static_cast<float>(std::min(certainty, 1.0)), cell.seen_observation,
+          cell.seen};
+}
+
+std::vector<TopicCounts> TopicModel::topics() const {
+  const TopicSlots& slots = gibbs_.slots();
+  std::vector<TopicCounts> by_slot(static_cast<size_t>(slots.end()));
+  for (int32_t w = 0; w < gibbs_.vocabularySize(); ++w) {
+    const std::span<const int32_t> counts = gibbs_.wordCounts(w);
+    for (size_t k = 0; k < by_slot.size(); ++k) {
+      if (counts[k] > 0) by_slot[k].words.push_back({w, counts[k]});
+    }
+  }
+  std::vector<TopicCounts> topics;
+  for (int32_t k = 0; k < slots.end(); ++k) {
+    if (!slots.isOpen(k)) continue;
+    TopicCounts& topic = topics.emplace_back(std::move(by_slot[static_cast<size_t>(k)]));
+    topic.id = slots.id(k);
+    topic.created = slots.created(k);
+    topic.weight = gibbs_.topicCount(k);
+  }
+  std::ranges::sort(topics, {}, &TopicCounts::id);
+  return topics;
+}
+
+}  // namespace shoal::topics
