@@ -5,6 +5,9 @@
 #include <numeric>
 #include <vector>
 
+#include "shoal/matching/descriptors.h"
+#include "shoal/matching/similarity.h"
+
 namespace shoal::matching {
 
 /// "These two topics look alike", i < j.
@@ -21,5 +24,22 @@ struct AssociationGraph {
 
   int numVertices() const { return std::accumulate(num_topics.begin(), num_topics.end(), 0); }
 };
+
+/// @throws std::invalid_argument naming what is no association graph: a negative count, an edge that is not
+/// i < j within the vertices, a weight that is negative or not finite, an edge that is there twice.
+void check(const AssociationGraph& graph);
+
+/// The robot of every vertex.
+std::vector<int> owners(const AssociationGraph& graph);
+
+/// Joins the topics of different robots that are at least `sigma` alike (edges of weight 1), and with
+/// `own_pairs` those of one robot as well. Empty topics get no edges.
+///
+/// @param topics  valid: check(topics) has passed.
+/// @param sigma   in (0, 1].
+///
+/// Cost: O(n² V) for n topics of V words.
+AssociationGraph associationGraph(const DescriptorSet& topics, Similarity similarity, double sigma,
+                                  bool own_pairs = false);
 
 }  // namespace shoal::matching

@@ -26,4 +26,8 @@ struct DescriptorSet {
   std::vector<std::vector<Descriptor>> robots;
 };
 
+/// @throws std::invalid_argument naming the robot and topic, and what would be right: words ascending and
+/// within the vocabulary, weights positive with a sum of at most 2^62, word groups ascending from 0.
+void check(const DescriptorSet& topics);
+
 }  // namespace shoal::matching

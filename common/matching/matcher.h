@@ -8,6 +8,7 @@
 #include "shoal/matching/association_graph.h"
 #include "shoal/matching/clustering.h"
 #include "shoal/matching/descriptors.h"
+#include "shoal/matching/similarity.h"
 
 namespace shoal::matching {
 
@@ -15,19 +16,20 @@ namespace shoal::matching {
 struct MatcherOptions {
   std::string matcher = "clear";      ///< one of matcherNames()
   std::string similarity = "cosine";  ///< one of similarityNames()
-  double sigma = 0.75;                ///< pairs at least this similar are edges; in (0, 1]
-  bool distinct = true;               ///< labels of one robot stay apart
+  double sigma = 0.75;                ///< "clear": pairs at least this similar are edges; in [1e-9, 1]
+  bool distinct = true;               ///< labels of one robot stay apart; false is for "clear" alone
 };
 
 /// Matchers that are built: "id", "hungarian", "clear".
 const std::vector<std::string>& matcherNames();
 
-/// Similarities that are built: "cosine", "overlap", "l1", "l2".
-const std::vector<std::string>& similarityNames();
+/// The similarity that goes with a matcher in the paper's figures: "l2" with "hungarian", else "cosine".
+std::string usualSimilarity(std::string_view matcher);
 
 /// Joins topics of several robots under common labels.
 ///
-/// Pure: equal input, equal output. The caller orders robots and topics canonically.
+/// Pure: equal input, equal output. The caller orders robots and topics canonically. Topics without words are
+/// joined with nothing by "hungarian" and "clear" and change nothing for the others.
 /// @throws std::invalid_argument naming the option or the descriptor that is wrong, and what would be right.
 Clustering match(const DescriptorSet& topics, const MatcherOptions& options);
 

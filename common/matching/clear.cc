@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "shoal/matching/clear.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "shoal/matching/assignment.h"
+#include "shoal/matching/spectrum.h"
+
+namespace shoal::matching {
+namespace {
+
+// Sums and scores are compared in whole units of 1e-9, so that round-off decides nothing.
+double rounded(double x) { return std::nearbyint(x * 1e9); }
+
+// One component's topics as unit vectors, and the centres among them.
+struct Embedding {
+  std::vector<int> vertices;   // s, ascending
+  Eigen::MatrixXd rows;        // s×c, each of length 1
+  std::vector<int> pivots;     // the centres, as rows of this component
+  std::vector<int> columns;    // and their numbers among all centres
+  Eigen::VectorXd likeness;    // s, sum over the centres p of |u_i · u_p|
+  std::vector<bool> is_pivot;  // s
+  Eigen::MatrixXd scores;      // s×pivots, u_i · u_p in units of 1e-9
+};
+
+std::vector<Embedding> embed(const SmallEnd& end) {
+  std::vector<Embedding> embeddings;
+  for (const ComponentSpectrum& c : end.components) {
+    Embedding& e = embeddings.emplace_back();
+    e.vertices = c.vertices;
+    // No row is zero: the eigenvector of eigenvalue 0 is positive on all of its component.
+    e.rows = c.eigenvectors.rowwise().normalized();
+    e.likeness = Eigen::VectorXd::Zero(e.rows.rows());
+    e.is_pivot.assign(c.vertices.size(), false);
+  }
+  return embeddings;
+}
+
+// The topic of a component that would be its next centre: (likeness, vertex, component, row).
+using Candidate = std::tuple<double, int, size_t, int>;
+
+void addBestCandidate(const Embedding& e, size_t component, std::set<Candidate>& candidates) {
+  int best = -1;
+  for (int i = 0; i < e.rows.rows(); ++i) {
+    if (e.is_pivot[static_cast<size_t>(i)]) continue;
+    if (best < 0 || rounded(e.likeness[i]) < rounded(e.likeness[best])) best = i;
+  }
+  if (best < 0) return;
+  candidates.emplace(rounded(e.likeness[best]), e.vertices[static_cast<size_t>(best)], component, best);
+}
+
+// Greedy choice of `count` centres: vertex 0, then always the topic least like those chosen, ties to the
+// lower vertex. Topics of different components are not alike at all, so each choice touches one component.
+void choosePivots(std::vector<Embedding>& embeddings, int count) {
+  std::set<Candidate> candidates;
+  for (size_t c = 0; c < embeddings.size(); ++c) addBestCandidate(embeddings[c], c, candidates);
+  for (int column = 0; column < count; ++column) {
+    const auto [likeness, vertex, component, row] = *candidates.begin();
+    candidates.erase(candidates.begin());
+    Embedding& e = embeddings[component];
+    e.pivots.push_back(row);
+    e.columns.push_back(column);
+    e.is_pivot[static_cast<size_t>(row)] = true;
+    e.likeness += (e.rows * e.rows.row(row).transpose()).cwiseAbs();
+    addBestCandidate(e, component, candidates);
+  }
+  for (Embedding& e : embeddings) {
+    e.scores = (e.rows * e.rows(e.pivots, Eigen::all).transpose()).unaryExpr(&rounded);
+  }
+}
+
+// A topic's place in the embedding.
+struct Place {
+  const Embedding* embedding = nullptr;
+  int row = 0;
+
+  size_t numScores() const { return embedding->columns.size(); }
+  int column(size_t k) const { return embedding->columns[k]; }
+  double score(size_t k) const { return embedding->scores(row, static_cast<Eigen::Index>(k)); }
+
+  size_t best() const {
+    Eigen::Index k = 0;
+    embedding->scores.row(row).maxCoeff(&k);
+    return static_cast<size_t>(k);
+  }
+};
+
+std::vector<Place> places(const std::vector<Embedding>& embeddings, int num_vertices) {
+  std::vector<Place> place(static_cast<size_t>(num_vertices));
+  for (const Embedding& e : embeddings) {
+    for (size_t i = 0; i < e.vertices.size(); ++i) {
+      place[static_cast<size_t>(e.vertices[i])] = {&e, static_cast<int>(i)};
+    }
+  }
+  return place;
+}
+
+// One robot's topics to distinct centres, best total score. Columns in which all its scores are 0 are all
+// alike: the lowest ones will do.
+std::vector<int> assignDistinct(const Place* topics, int num_topics, int num_columns) {
+  const auto count = static_cast<size_t>(num_topics);
+  std::vector<int> favourite(count);
+  std::set<int> wanted;
+  bool all_positive = true;
+  for (size_t t = 0; t < count; ++t) {
+    const size_t k = topics[t].best();
+    favourite[t] = topics[t].column(k);
+    all_positive = all_positive && topics[t].score(k) > 0.0;
+    wanted.insert(favourite[t]);
+  }
+  if (all_positive && wanted.size() == count) return favourite;  // nobody stands in another's way
+
+  std::set<int> used;
+  for (size_t t = 0; t < count; ++t) {
+    for (size_t k = 0; k < topics[t].numScores(); ++k) {
+      if (topics[t].score(k) != 0.0) used.insert(topics[t].column(k));
+    }
+  }
+  const size_t num_scored = used.size();
+  for (int column = 0; column < num_columns && used.size() < num_scored + count; ++column)
+    used.insert(column);
+
+  const std::vector<int> columns(used.begin(), used.end());
+  Eigen::MatrixXd cost =
+      Eigen::MatrixXd::Constant(num_topics, static_cast<Eigen::Index>(columns.size()), 1e9);
+  for (size_t t = 0; t < count; ++t) {
+    for (size_t k = 0; k < topics[t].numScores(); ++k) {
+      const auto at = std::lower_bound(columns.begin(), columns.end(), topics[t].column(k));
+      if (at == columns.end() || *at != topics[t].column(k)) continue;
+      cost(static_cast<Eigen::Index>(t), at - columns.begin()) -= topics[t].score(k);
+    }
+  }
+  std::vector<int> chosen = assign(cost);
+  for (int& column : chosen) column = columns[static_cast<size_t>(column)];
+  return chosen;
+}
+
+void checkOptions(const ClearOptions& options) {
+  if (!(options.eigenvalue_threshold > 0.0 && options.eigenvalue_threshold < 1.0)) {
+    throw std::invalid_argument("eigenvalue_threshold must lie in (0, 1), got " +
+                                std::to_string(options.eigenvalue_threshold));
+  }
+  if (!(options.eigenvalue_tolerance >= 0.0 && options.eigenvalue_tolerance < options.eigenvalue_threshold)) {
+    throw std::invalid_argument("eigenvalue_tolerance must lie in [0, eigenvalue_threshold), got " +
+                                std::to_string(options.eigenvalue_tolerance));
+  }
+}
+
+}  // namespace
+
+Eigen::SparseMatrix<double> normalizedLaplacian(const AssociationGraph& graph, bool distinct) {
+  check(graph);
+  const std::vector<int> owner = owners(graph);
+  const auto n = static_cast<Eigen::Index>(owner.size());
+
+  std::vector<Eigen::Triplet<double>> entries;
+  for (const Edge& e : graph.edges) {
+    if (e.weight == 0.0) continue;
+    if (distinct && owner[static_cast<size_t>(e.i)] == owner[static_cast<size_t>(e.j)]) continue;
+    entries.emplace_back(e.i, e.j, e.weight);
+    entries.emplace_back(e.j, e.i, e.weight);
+  }
+  for (int v = 0; v < n; ++v) entries.emplace_back(v, v, 0.0);
+  Eigen::SparseMatrix<double> matrix(n, n);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+
+  // Summed along the sorted columns: the order of the edges changes no bit.
+  const Eigen::VectorXd degree = matrix * Eigen::VectorXd::Ones(n);
+  const Eigen::VectorXd root = (degree.array() + 1.0).sqrt();
+  for (Eigen::Index j = 0; j < n; ++j) {
+    if (!std::isfinite(degree[j])) {
+      throw std::invalid_argument("the weights at vertex " + std::to_string(j) + " have no finite sum");
+    }
+  }
+  for (Eigen::Index j = 0; j < n; ++j) {
+    for (Eigen::SparseMatrix<double>::InnerIterator it(matrix, j); it; ++it) {
+      it.valueRef() =
+          it.row() == j ? degree[j] / (degree[j] + 1.0) : -it.value() / (root[it.row()] * root[j]);
+    }
+  }
+  return matrix;
+}
+
+Clustering rectify(const AssociationGraph& graph, const ClearOptions& options) {
+  checkOptions(options);
+  const Eigen::SparseMatrix<double> laplacian = normalizedLaplacian(graph, options.distinct);
+  const int n = graph.numVertices();
+  if (n == 0) return {};
+
+  // Universe: the eigenvalues below the threshold, and room for the largest robot.
+  const int largest = *std::max_element(graph.num_topics.begin(), graph.num_topics.end());
+  const SmallEnd end = smallEnd(laplacian, options.eigenvalue_threshold - options.eigenvalue_tolerance,
+                                options.distinct ? largest : 0);
+
+  // Lifting and embedding.
+  std::vector<Embedding> embeddings = embed(end);
+  choosePivots(embeddings, end.num_kept);
+
+  // Alignment, robot by robot.
+  const std::vector<Place> place = places(embeddings, n);
+  std::vector<int> label;
+  for (const int num_topics : graph.num_topics) {
+    const Place* topics = place.data() + label.size();
+    if (options.distinct) {
+      const std::vector<int> columns = assignDistinct(topics, num_topics, end.num_kept);
+      label.insert(label.end(), columns.begin(), columns.end());
+    } else {
+      for (int t = 0; t < num_topics; ++t) label.push_back(topics[t].column(topics[t].best()));
+    }
+  }
+  return numberByFirstAppearance(label, end.num_kept);
+}
+
+}  // namespace shoal::matching
