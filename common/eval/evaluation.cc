@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "shoal/eval/evaluation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <set>
+#include <stdexcept>
+#include <thread>
+
+#include "shoal/eval/ami.h"
+#include "shoal/eval/cell_truth.h"
+#include "shoal/mapping/belief_files.h"
+#include "shoal/mapping/belief_pieces.h"
+#include "shoal/mapping/fusion.h"
+
+namespace shoal::eval {
+namespace fs = std::filesystem;
+
+Run readRun(const std::string& dir, const world::Grid& grid) {
+  Run run;
+  if (!fs::is_directory(fs::path(dir) / "robots")) {
+    throw std::runtime_error(dir + " is not a finished run: it has no folder \"robots\"");
+  }
+  std::vector<world::RobotId> robots;
+  for (const auto& entry : fs::directory_iterator(fs::path(dir) / "robots")) {
+    if (const auto robot = world::parseRobotId(entry.path().filename().string())) robots.push_back(*robot);
+  }
+  std::ranges::sort(robots);
+  for (const world::RobotId robot : robots) {
+    const std::string folder = dir + "/robots/" + name(robot);
+    run.robots.push_back(mapping::readBelief(folder, robot, grid));
+    run.paths.push_back(mapping::readPoses(folder + "/poses.txt"));
+  }
+  if (fs::exists(fs::path(dir) / "single" / "map.csv")) {
+    run.single = mapping::readBelief(dir + "/single", world::RobotId{0}, grid);
+  }
+  return run;
+}
+
+TruthOfCell truthFor(const world::World& world, const world::Grid& grid, const Run& run,
+                     const world::Intrinsics& intrinsics) {
+  if (world.hasFlatTruth()) {
+    return [&world, grid](const world::CellIndex& cell) { return flatTruth(world, grid, cell); };
+  }
+  std::vector<world::Pose> poses;
+  for (const auto& path : run.paths)
+    for (const mapping::StampedPose& pose : path) poses.push_back(pose.world_from_camera);
+  // Votes are sums, so it does not matter which thread counts which frame.
+  std::array<ProjectedTruth, 2> halves{ProjectedTruth(grid), ProjectedTruth(grid)};
+  const auto project = [&](size_t half) {
+    for (size_t i = half; i < poses.size(); i += 2) halves[half].add(world.render(intrinsics, poses[i]));
+  };
+  {
+    const std::jthread other(project, 1);
+    project(0);
+  }
+  halves[0].add(halves[1]);
+  const auto truth = std::make_shared<const ProjectedTruth>(std::move(halves[0]));
+  return [truth](const world::CellIndex& cell) { return truth->at(cell); };
+}
+
+Score score(const std::vector<std::pair<world::CellIndex, int>>& labels, const TruthOfCell& truth) {
+  Score result{.cells = std::ssize(labels)};
+  std::set<int> all_labels;
+  std::vector<int> found, expected;
+  for (const auto& [cell, label] : labels) {
+    all_labels.insert(label);
+    if (const auto true_class = truth(cell)) {
+      found.push_back(label);
+      expected.push_back(*true_class);
+    }
+  }
+  result.scored = std::ssize(found);
+  result.labels = static_cast<int>(all_labels.size());
+  result.classes = static_cast<int>(std::set<int>(expected.begin(), expected.end()).size());
+  if (found.empty()) return result;
+  result.ami = adjustedMutualInformation(found, expected);
+  result.nmi = normalizedMutualInformation(found, expected);
+  return result;
+}
+
+std::vector<Score> scoreMatchers(const Run& run, const std::vector<matching::MatcherOptions>& matchers,
+                                 const TruthOfCell& truth) {
+  mapping::BeliefStore store;
+  for (const mapping::LocalBelief& belief : run.robots)
+    for (const mapping::Piece& piece : mapping::wholePieces(belief)) store.apply(piece);
+  std::vector<Score> scores;
+  for (const matching::MatcherOptions& options : matchers) {
+    std::vector<std::pair<world::CellIndex, int>> labels;
+    for (const mapping::GlobalCell& c : mapping::fuse(store, options).cells) {
+      labels.emplace_back(c.cell, number(c.label));
+    }
+    scores.push_back(score(labels, truth));
+  }
+  return scores;
+}
+
+Score scoreSingle(const mapping::LocalBelief& single, const TruthOfCell& truth) {
+  std::vector<std::pair<world::CellIndex, int>> labels;
+  for (const mapping::BelievedCell& c : single.cells) labels.emplace_back(c.cell, number(c.topic));
+  return score(labels, truth);
+}
+
+std::vector<matching::MatcherOptions> allMatchers() {
+  return {{.matcher = "id"},
+          {.matcher = "hungarian", .similarity = "l2"},
+          {.matcher = "clear", .similarity = "cosine", .sigma = 0.75}};
+}
+
+double coverageOf(const std::vector<world::CellIndex>& cells, const world::World& world,
+                  const world::Grid& grid) {
+  const world::Extent extent = world.extent();
+  const world::CellIndex first = grid.cellOf({extent.min_x, extent.min_y, 0});
+  const world::CellIndex last = grid.cellOf({extent.max_x, extent.max_y, 0});
+  // Cells whose centre lies inside the extent.
+  const auto inside = [&](int32_t x, int32_t y) {
+    const Eigen::Vector3d p = grid.centerOf({x, y, 0});
+    return p.x() >= extent.min_x && p.x() <= extent.max_x && p.y() >= extent.min_y && p.y() <= extent.max_y;
+  };
+  int64_t total = 0;
+  for (int32_t x = first.x; x <= last.x; ++x)
+    for (int32_t y = first.y; y <= last.y; ++y) total += inside(x, y) ? 1 : 0;
+  std::set<std::pair<int32_t, int32_t>> seen;
+  for (const world::CellIndex& c : cells)
+    if (inside(c.x, c.y)) seen.emplace(c.x, c.y);
+  return total == 0 ? 0.0 : static_cast<double>(seen.size()) / static_cast<double>(total);
+}
+
+}  // namespace shoal::eval

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "shoal/mapping/global_map.h"
+#include "shoal/world/grid.h"
+
+namespace shoal::mapping {
+
+/// What is known of one process of a mission, as its last heartbeat told it.
+struct NodeStatus {
+  std::string name;              ///< "R03", "OPERATOR"
+  std::string phase;             ///< "flying", "landed", "leaving", "node"
+  double heard_s = 0;            ///< mission time of its last heartbeat
+  int32_t observation = -1;      ///< its latest image, -1 = none yet
+  int32_t num_observations = 0;  ///< of its whole stream, 0 = unknown
+  int32_t topics = 0, cells = 0;
+  int64_t bytes_sent = 0;   ///< on the link, headers counted
+  int32_t budget = 0;       ///< bytes per second of mission time, 0 = unlimited
+  int32_t queue_bytes = 0;  ///< waiting to be sent
+  float ms_per_frame = 0;
+  float x_m = 0, y_m = 0, z_m = 0;  ///< position of the camera, world
+  int32_t rejected = 0, conflicts = 0;
+  bool heard_whole = false;  ///< the answering node holds all that this one has to say
+};
+
+/// A mission as one place knows it: a live node, a finished run or a recording. All questions are asked of
+/// it.
+struct MissionView {
+  int64_t mission = 0;
+  double cell_size_m = 1.0;
+  GlobalMap map;
+  std::vector<NodeStatus> nodes;  ///< robots first, by number, then the others by name
+};
+
+/// Answers as JSON objects; docs/operators.md shows one of each.
+nlohmann::ordered_json statusAnswer(const MissionView& view);
+nlohmann::ordered_json labelsAnswer(const MissionView& view);
+/// Every cell of the column at (x, y), metres, world, from low to high. No cells: an empty list.
+nlohmann::ordered_json atAnswer(const MissionView& view, double x_m, double y_m);
+
+}  // namespace shoal::mapping

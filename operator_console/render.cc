@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "operator_console/render.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "shoal/mapping/csv.h"
+#include "shoal/mapping/map_files.h"
+#include "shoal/matching/assignment.h"
+#include "shoal/random.h"
+
+namespace shoal::console {
+namespace {
+
+constexpr int kMapPixels = 720;    // long side of a map
+constexpr int kLegendWidth = 300;  // pixels
+constexpr int kMargin = 16;
+constexpr int kTitleHeight = 34;
+constexpr int kRowHeight = 24;
+constexpr size_t kLegendRows = 24;
+const cv::Scalar kPaper(250, 250, 250), kInk(40, 40, 40), kNothing(225, 225, 225);
+
+cv::Scalar bgr(const Rgb& c) { return {double(c[2]), double(c[1]), double(c[0])}; }
+
+void write(cv::Mat& picture, const std::string& text, cv::Point at, double size = 0.5) {
+  cv::putText(picture, text, at, cv::FONT_HERSHEY_SIMPLEX, size, kInk, 1, cv::LINE_AA);
+}
+
+struct Column {
+  int32_t z;
+  Rgb color;
+};
+using Columns = std::map<std::pair<int32_t, int32_t>, Column>;
+
+void put(Columns& columns, const world::CellIndex& cell, const Rgb& color) {
+  const auto [at, inserted] = columns.emplace(std::pair(cell.x, cell.y), Column{cell.z, color});
+  if (!inserted && at->second.z <= cell.z) at->second = {cell.z, color};
+}
+
+// One pixel a column, then enlarged; north is up.
+cv::Mat drawColumns(const Columns& columns, const cv::Rect& bounds) {
+  cv::Mat small(bounds.height, bounds.width, CV_8UC3, kNothing);
+  for (const auto& [xy, column] : columns) {
+    const int row = bounds.y + bounds.height - 1 - xy.second, col = xy.first - bounds.x;
+    small.at<cv::Vec3b>(row, col) = {column.color[2], column.color[1], column.color[0]};
+  }
+  const double scale = std::max(1.0, double(kMapPixels) / std::max(bounds.width, bounds.height));
+  cv::Mat large;
+  cv::resize(small, large, {}, scale, scale, cv::INTER_NEAREST);
+  return large;
+}
+
+cv::Rect boundsOf(const mapping::GlobalMap& map) {
+  int32_t min_x = INT32_MAX, min_y = INT32_MAX, max_x = INT32_MIN, max_y = INT32_MIN;
+  for (const auto& c : map.cells) {
+    min_x = std::min(min_x, c.cell.x);
+    max_x = std::max(max_x, c.cell.x);
+    min_y = std::min(min_y, c.cell.y);
+    max_y = std::max(max_y, c.cell.y);
+  }
+  return {min_x, min_y, max_x - min_x + 1, max_y - min_y + 1};
+}
+
+struct LegendRow {
+  Rgb color;
+  std::string text;
+};
+
+std::vector<LegendRow> legendOf(const mapping::GlobalMap& map, const world::Grid& grid,
+                                const std::map<world::GlobalLabel, Rgb>& colors) {
+  const auto areas = mapping::areas(map, grid);
+  std::vector<mapping::LabelSummary> labels = map.labels;
+  std::ranges::stable_sort(labels, std::ranges::greater{}, &mapping::LabelSummary::cells);
+  double total = 0;
+  for (const auto& [label, area] : areas) total += area;
+  std::vector<LegendRow> rows;
+  for (const auto& label : labels) {
+    if (rows.size() == kLegendRows - 1 && labels.size() > kLegendRows) {
+      rows.push_back(
+          {{225, 225, 225}, "and " + std::to_string(labels.size() - rows.size()) + " more labels"});
+      break;
+    }
+    const auto area = areas.find(label.label);
+    const double share = area == areas.end() || total <= 0 ? 0 : area->second / total;
+    rows.push_back({colors.at(label.label),
+                    (label.name.empty() ? std::to_string(number(label.label)) : label.name) + "  " +
+                        mapping::fixed(share * 100, 1) + " %  " + std::to_string(label.robots.size()) +
+                        (label.robots.size() == 1 ? " robot" : " robots")});
+  }
+  return rows;
+}
+
+void drawLegend(cv::Mat& picture, cv::Point at, const std::string& heading,
+                const std::vector<LegendRow>& rows) {
+  write(picture, heading, at + cv::Point(0, 14), 0.55);
+  for (size_t i = 0; i < rows.size(); ++i) {
+    const cv::Point corner = at + cv::Point(0, 26 + static_cast<int>(i) * kRowHeight);
+    cv::rectangle(picture, {corner, cv::Size(18, 16)}, bgr(rows[i].color), cv::FILLED);
+    cv::rectangle(picture, {corner, cv::Size(18, 16)}, kInk, 1);
+    write(picture, rows[i].text, corner + cv::Point(28, 13), 0.45);
+  }
+}
+
+}  // namespace
+
+Rgb colorOf(world::GlobalLabel label) {
+  const uint64_t hash = mix64(static_cast<uint64_t>(number(label)) + 17);
+  cv::Mat3b hsv(1, 1,
+                cv::Vec3b(static_cast<uint8_t>(hash % 180), static_cast<uint8_t>(110 + (hash >> 16) % 130),
+                          static_cast<uint8_t>(130 + (hash >> 32) % 115)));
+  cv::Mat3b color;
+  cv::cvtColor(hsv, color, cv::COLOR_HSV2RGB);
+  const cv::Vec3b c = color(0, 0);
+  return {c[0], c[1], c[2]};
+}
+
+std::map<world::GlobalLabel, Rgb> alignedColors(const mapping::GlobalMap& map, const TruthPicture& truth) {
+  std::map<world::GlobalLabel, Rgb> colors;
+  std::map<world::GlobalLabel, std::map<int, int64_t>> overlap;
+  for (const auto& c : map.cells) {
+    colors.emplace(c.label, colorOf(c.label));
+    if (const auto true_class = truth.of_cell(c.cell)) ++overlap[c.label][*true_class];
+  }
+  std::vector<world::GlobalLabel> labels;
+  for (const auto& [label, counts] : overlap) labels.push_back(label);
+  if (labels.empty() || truth.classes.empty()) return colors;
+  // Rows are classes; columns labels, padded so that every class finds one.
+  const auto num_rows = static_cast<Eigen::Index>(truth.classes.size());
+  Eigen::MatrixXd cost =
+      Eigen::MatrixXd::Zero(num_rows, std::max(num_rows, static_cast<Eigen::Index>(labels.size())));
+  for (Eigen::Index r = 0; r < num_rows; ++r)
+    for (size_t l = 0; l < labels.size(); ++l) {
+      const auto& counts = overlap.at(labels[l]);
+      const auto cells = counts.find(truth.classes[static_cast<size_t>(r)].id);
+      if (cells != counts.end()) cost(r, static_cast<Eigen::Index>(l)) = -static_cast<double>(cells->second);
+    }
+  const std::vector<int> column = matching::assign(cost);
+  for (size_t r = 0; r < truth.classes.size(); ++r) {
+    const auto l = static_cast<size_t>(column[r]);
+    if (l < labels.size() && overlap.at(labels[l]).contains(truth.classes[r].id)) {
+      colors[labels[l]] = truth.classes[r].rgb;
+    }
+  }
+  return colors;
+}
+
+cv::Mat render(const mapping::GlobalMap& map, const world::Grid& grid, const std::string& title,
+               const std::optional<TruthPicture>& truth) {
+  if (map.cells.empty()) {
+    cv::Mat picture(200, 480, CV_8UC3, kPaper);
+    write(picture, title, {kMargin, 30}, 0.6);
+    write(picture, "nothing has been mapped yet", {kMargin, 110});
+    return picture;
+  }
+  std::map<world::GlobalLabel, Rgb> colors;
+  if (truth) {
+    colors = alignedColors(map, *truth);
+  } else {
+    for (const auto& c : map.cells) colors.emplace(c.label, colorOf(c.label));
+  }
+  Columns fused, true_columns;
+  for (const auto& c : map.cells) {
+    put(fused, c.cell, colors.at(c.label));
+    if (!truth) continue;
+    const auto id = truth->of_cell(c.cell);
+    const auto known = std::ranges::find_if(truth->classes, [&](const auto& k) { return id && k.id == *id; });
+    if (known != truth->classes.end()) put(true_columns, c.cell, known->rgb);
+  }
+  const cv::Rect bounds = boundsOf(map);
+  const cv::Mat fused_picture = drawColumns(fused, bounds);
+  const auto rows = legendOf(map, grid, colors);
+  std::vector<LegendRow> class_rows;
+  if (truth)
+    for (const auto& k : truth->classes) class_rows.push_back({k.rgb, k.name});
+
+  const int legend_height =
+      26 + static_cast<int>(rows.size() + (truth ? class_rows.size() + 2 : 0)) * kRowHeight;
+  const int map_width = fused_picture.cols, map_height = fused_picture.rows;
+  const int maps = truth ? 2 : 1;
+  cv::Mat picture(kTitleHeight + std::max(map_height, legend_height) + 2 * kMargin,
+                  maps * (map_width + kMargin) + kLegendWidth + kMargin, CV_8UC3, kPaper);
+  write(picture, title, {kMargin, kTitleHeight - 8}, 0.6);
+  const int top = kTitleHeight + kMargin;
+  fused_picture.copyTo(picture({kMargin, top, map_width, map_height}));
+  int left = kMargin + map_width + kMargin;
+  if (truth) {
+    drawColumns(true_columns, bounds).copyTo(picture({left, top, map_width, map_height}));
+    write(picture, "truth", {left, top - 6});
+    left += map_width + kMargin;
+  }
+  drawLegend(picture, {left, top}, "labels", rows);
+  if (truth) {
+    drawLegend(picture, {left, top + (static_cast<int>(rows.size()) + 2) * kRowHeight}, "truth", class_rows);
+  }
+  return picture;
+}
+
+std::string encodePng(const cv::Mat& picture) {
+  std::vector<uint8_t> bytes;
+  cv::imencode(".png", picture, bytes);
+  return {bytes.begin(), bytes.end()};
+}
+
+}  // namespace shoal::console

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "shoal/eval/evaluation.h"
+
+#include <gtest/gtest.h>
+
+namespace shoal::eval {
+namespace {
+
+using world::CellIndex;
+
+TEST(ScoreTest, LeavesOutCellsWithoutTruthAndCountsThem) {
+  const TruthOfCell truth = [](const CellIndex& c) {
+    return c.x < 4 ? std::optional<int>(c.x / 2) : std::nullopt;
+  };
+  std::vector<std::pair<CellIndex, int>> labels;
+  for (int x = 0; x < 6; ++x) labels.push_back({{x, 0, 0}, 10 + x / 2});
+  const Score s = score(labels, truth);
+  EXPECT_EQ(s.cells, 6);
+  EXPECT_EQ(s.scored, 4);
+  EXPECT_EQ(s.labels, 3);
+  EXPECT_EQ(s.classes, 2);
+  EXPECT_NEAR(s.ami, 1.0, 1e-12);  // where there is truth, the labels agree with it
+}
+
+TEST(ScoreTest, OfNothingIsZero) {
+  const Score s = score({}, [](const CellIndex&) { return std::optional<int>(1); });
+  EXPECT_EQ(s.scored, 0);
+  EXPECT_EQ(s.ami, 0.0);
+}
+
+// Two robots; the first calls sand 0 and rock 1, the second the other way round. By words CLEAR and Hungarian
+// put that right, ID cannot.
+TEST(ScoreMatchersTest, TellsMatchersApart) {
+  Run run;
+  for (int r = 0; r < 2; ++r) {
+    mapping::LocalBelief b{world::RobotId{r}, {0, 0}, {{"g", 0, 10}}, {}, {}};
+    for (int t = 0; t < 2; ++t) {
+      b.topics.push_back({world::TopicId{t}, {0}, 9, {{t == r ? 3 : 8, 9}}});
+      for (int y = 0; y < 5; ++y) b.cells.push_back({{r * 2 + t, y, 0}, world::TopicId{t}, {0}, 1.f});
+    }
+    run.robots.push_back(std::move(b));
+  }
+  // Robot 0: column 0 is word 3, column 1 word 8; robot 1: column 2 word 8, column 3 word 3.
+  const TruthOfCell truth = [](const CellIndex& c) {
+    return std::optional<int>(c.x == 0 || c.x == 3 ? 0 : 1);
+  };
+  const auto scores = scoreMatchers(run, allMatchers(), truth);
+  ASSERT_EQ(scores.size(), 3u);
+  EXPECT_LT(scores[0].ami, 0.1);
+  EXPECT_NEAR(scores[1].ami, 1.0, 1e-12);
+  EXPECT_NEAR(scores[2].ami, 1.0, 1e-12);
+}
+
+}  // namespace
+}  // namespace shoal::eval
