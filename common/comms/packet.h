@@ -25,10 +25,21 @@ struct Packet {
 };
 
 /// A datagram's cost on the wire: payload, channel with its NUL, LCM's 8-byte header, UDP 8, IP 20.
-constexpr size_t wireSize(size_t channel_length, size_t payload) { return payload + channel_length + 1 + 8 + 28; }
+constexpr size_t wireSize(size_t channel_length, size_t payload) {
+  return payload + channel_length + 1 + 8 + 28;
+}
 inline size_t wireSize(const Packet& packet) { return wireSize(packet.channel.size(), packet.bytes.size()); }
 
 /// No message is larger: LCM header, channel, NUL and payload together (DESIGN: every message <= 1400 bytes).
 inline constexpr size_t kMaxMessageBytes = 1400;
+constexpr size_t messageSize(size_t channel_length, size_t payload) {
+  return 8 + channel_length + 1 + payload;
+}
+inline size_t messageSize(const Packet& packet) {
+  return messageSize(packet.channel.size(), packet.bytes.size());
+}
+
+/// The largest datagram on the wire.
+inline constexpr size_t kMaxWireBytes = kMaxMessageBytes + 28;
 
 }  // namespace shoal::comms

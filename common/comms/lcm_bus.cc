@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "shoal/comms/lcm_bus.h"
+
+#include <poll.h>
+
+#include <deque>
+#include <lcm/lcm-cpp.hpp>
+#include <stdexcept>
+#include <utility>
+
+#include "shoal/comms/channels.h"
+#include "shoal/comms/lcm_url.h"
+#include "shoal/demand.h"
+
+namespace shoal::comms {
+
+struct LcmBus::Impl {
+  explicit Impl(const std::string& url_in, size_t max) : url(url_in), max_queue(max), transport(url_in) {}
+
+  void onMessage(const lcm::ReceiveBuffer* buffer, const std::string& channel) noexcept;
+
+  std::string url;
+  size_t max_queue;
+  std::deque<Packet> queue;
+  LcmBusCounts counts;
+  lcm::LCM transport;
+  int fd = -1;
+};
+
+// Called from inside LCM, which an exception would leave locked. A datagram without a channel's NUL arrives
+// with a data_size near 2^32: nothing is read before the sizes are known to be sound.
+void LcmBus::Impl::onMessage(const lcm::ReceiveBuffer* buffer, const std::string& channel) noexcept {
+  if (messageSize(channel.size(), buffer->data_size) > kMaxMessageBytes) {
+    ++counts.bad_size;
+    return;
+  }
+  if (queue.size() >= max_queue) {
+    ++counts.dropped;
+    return;
+  }
+  try {
+    if (!parseChannel(channel)) {
+      ++counts.bad_channel;
+      return;
+    }
+    const auto* bytes = static_cast<const uint8_t*>(buffer->data);
+    queue.push_back({channel, Bytes(bytes, bytes + buffer->data_size)});
+  } catch (...) {  // no memory
+    ++counts.dropped;
+  }
+}
+
+LcmBus::LcmBus(const std::string& url, const LcmBusOptions& options) {
+  if (options.max_queue < 1) throw std::invalid_argument("max_queue must be at least 1, got 0");
+  impl_ = std::make_unique<Impl>(withReceiveBuffer(url), options.max_queue);
+  const auto fail = [&](const char* what) {
+    throw std::runtime_error("LCM cannot use " + impl_->url + ": " + what +
+                             "; without a multicast route, run: sudo ip route add 224.0.0.0/4 dev lo");
+  };
+  if (!impl_->transport.good()) fail("the socket cannot be set up");
+  lcm::Subscription* subscription = impl_->transport.subscribe(kAllChannels, &Impl::onMessage, impl_.get());
+  if (subscription == nullptr) fail("subscribing failed");
+  subscription->setQueueCapacity(0);         // unlimited: the bound is ours, with a counter
+  impl_->fd = impl_->transport.getFileno();  // starts the receiving thread, with LCM's self test
+  if (impl_->fd < 0) fail("the receiving thread did not start");
+}
+
+LcmBus::~LcmBus() = default;
+
+void LcmBus::publish(const Packet& packet) {
+  SHOAL_DEMAND(messageSize(packet) <= kMaxMessageBytes);
+  SHOAL_DEMAND(parseChannel(packet.channel).has_value());
+  impl_->transport.publish(packet.channel, packet.bytes.data(),
+                           static_cast<unsigned int>(packet.bytes.size()));
+}
+
+int LcmBus::receive(int timeout_ms, const std::function<void(const Packet&)>& handler) {
+  std::deque<Packet>& queue = impl_->queue;
+  pollfd readable{impl_->fd, POLLIN, 0};
+  if (poll(&readable, 1, queue.empty() ? timeout_ms : 0) > 0) {
+    // Bounded, so that a flood faster than this loop cannot hold it.
+    const size_t most = 2 * impl_->max_queue;
+    for (size_t i = 0; i < most && impl_->transport.handleTimeout(0) > 0; ++i) {
+    }
+  }
+  int delivered = 0;
+  while (!queue.empty()) {
+    const Packet packet = std::move(queue.front());
+    queue.pop_front();
+    ++impl_->counts.received;
+    ++delivered;
+    handler(packet);  // when it throws, the rest waits for the next call
+  }
+  return delivered;
+}
+
+int LcmBus::fileDescriptor() const { return impl_->fd; }
+const std::string& LcmBus::url() const { return impl_->url; }
+const LcmBusCounts& LcmBus::counts() const { return impl_->counts; }
+
+}  // namespace shoal::comms

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "shoal/comms/bus.h"
+
+namespace shoal::comms {
+
+struct LcmBusOptions {
+  /// Packets kept between two deliveries, >= 1. What comes when so many wait is dropped and counted.
+  size_t max_queue = 16384;
+};
+
+/// What LcmBus did with what it heard on our channels.
+struct LcmBusCounts {
+  uint64_t received = 0;     ///< Delivered to a handler.
+  uint64_t dropped = 0;      ///< The queue was full, or memory was.
+  uint64_t bad_channel = 0;  ///< Begins like ours but is not SHOAL_<NODE>_<KIND>.
+  uint64_t bad_size = 0;     ///< Above kMaxMessageBytes.
+};
+
+/// A multicast group through LCM, which runs a receiving thread of its own. Handlers run in the thread that
+/// calls receive(), outside of LCM, so that they may throw and publish. Only packets on channels of ours and
+/// of legal size are delivered; their bytes are not looked at.
+class LcmBus final : public Bus {
+ public:
+  /// @param url  As parseUrl(); recv_buf_size is added when absent.
+  /// @throws std::invalid_argument for a bad URL or option, std::runtime_error, with the command that may
+  /// help,
+  ///         when LCM cannot use the network.
+  explicit LcmBus(const std::string& url, const LcmBusOptions& options = {});
+  ~LcmBus() override;
+  LcmBus(const LcmBus&) = delete;
+  LcmBus& operator=(const LcmBus&) = delete;
+
+  /// Aborts for a message above kMaxMessageBytes or on a channel that is not ours.
+  void publish(const Packet& packet) override;
+
+  int receive(int timeout_ms, const std::function<void(const Packet&)>& handler) override;
+
+  /// Readable when something waits: for poll() together with other descriptors.
+  int fileDescriptor() const;
+
+  /// The URL in use.
+  const std::string& url() const;
+
+  const LcmBusCounts& counts() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace shoal::comms

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "shoal/comms/packet.h"
+
+namespace shoal::comms {
+
+struct SendQueueOptions {
+  /// Shares of the bytes among classes that all have new content waiting, each >= 1.
+  int64_t matches_weight = 8;
+  int64_t topics_weight = 8;
+  int64_t bricks_weight = 4;
+  int64_t certainty_weight = 1;
+
+  /// Content is not sent again sooner than this after it was last sent, mission time, >= 1. Bounds what an
+  /// idle node without a budget sends.
+  int64_t min_resend_interval_us = 10'000'000;
+};
+
+/// What a node has to say, by key: at most one packet, the newest, for each.
+///
+/// New content goes first. Among classes with new content the bytes are shared by weight (stride scheduling;
+/// ties go to the class of higher utility), so that every class drains; a class that had nothing to send
+/// saves nothing up. Inside a class, whoever waits longest goes first; newer content takes over the place of
+/// older unsent content. When nothing new waits, what was sent least recently is sent again, round and round:
+/// that is how losses heal. Deterministic. next() then markSent(), so that a budget may stand between the
+/// two.
+class SendQueue {
+ public:
+  /// @throws std::invalid_argument when an option is below 1.
+  explicit SendQueue(const SendQueueOptions& options = {});
+
+  /// Puts `packet` where `key` was, or adds it. Bytes equal to those already held change nothing, so encode
+  /// without the time of sending and let Sender stamp it.
+  /// @throws std::invalid_argument for a class other than matches, topics, bricks and certainty, for a
+  /// message
+  ///         above kMaxMessageBytes, and when `key` is held in another class.
+  /// Cost: O(log keys).
+  void offer(TrafficClass traffic, std::string_view key, Packet packet);
+
+  /// Holds `key` no longer. Nothing happens when it was not held.
+  void forget(std::string_view key);
+
+  struct Next {
+    TrafficClass traffic;
+    std::string_view key;  ///< Valid until the next non-const call, as is `packet`.
+    const Packet* packet;
+    bool resent;  ///< The same content was sent before.
+  };
+
+  /// What to send now; nothing when nothing new waits and all was sent recently.
+  std::optional<Next> next(int64_t now_us) const;
+
+  /// next() was sent. Aborts when there was nothing to send.
+  void markSent(int64_t now_us);
+
+  /// When content is due to be sent again, if nothing new comes.
+  std::optional<int64_t> nextResend() const;
+
+  size_t numKeys() const { return entries_.size(); }
+  size_t numWaiting(TrafficClass traffic) const { return of(traffic).waiting.size(); }
+  int64_t waitingBytes(TrafficClass traffic) const { return of(traffic).waiting_bytes; }  ///< On the wire.
+  int64_t waitingBytes() const;                                                           ///< Of all classes.
+
+ private:
+  struct Entry {
+    TrafficClass traffic;
+    Packet packet;
+    bool waiting;          // else in rotation_
+    uint64_t place;        // its key in waiting or rotation_
+    int64_t last_sent_us;  // when in rotation
+  };
+  using Entries = std::map<std::string, Entry, std::less<>>;
+  using Line = std::map<uint64_t, Entries::iterator>;
+  struct Class {
+    int64_t weight = 0;  // 0: not for this queue
+    int64_t pass = 0;    // stride scheduling: the class of lowest pass goes next
+    int64_t waiting_bytes = 0;
+    Line waiting;
+  };
+
+  const Class& of(TrafficClass traffic) const { return classes_[static_cast<size_t>(traffic)]; }
+  Class& of(TrafficClass traffic) { return classes_[static_cast<size_t>(traffic)]; }
+  const Class* choose() const;
+  void await(Entries::iterator it);
+  void leave(Entries::iterator it);
+
+  int64_t min_resend_interval_us_;
+  std::array<Class, kNumTrafficClasses> classes_;
+  int64_t pass_ = 0;  // of the class served last
+  uint64_t next_place_ = 0;
+  Entries entries_;
+  Line rotation_;  // in order of sending
+};
+
+}  // namespace shoal::comms

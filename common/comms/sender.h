@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "shoal/comms/budget.h"
+#include "shoal/comms/bus.h"
+#include "shoal/comms/heartbeat_pacer.h"
+#include "shoal/comms/packet.h"
+#include "shoal/comms/send_queue.h"
+#include "shoal/comms/stats.h"
+#include "shoal/comms/wall_pacer.h"
+
+namespace shoal::comms {
+
+struct SenderOptions {
+  /// Bytes on the wire per second of mission time, 0 = unlimited.
+  int64_t bytes_per_s = 0;
+
+  SendQueueOptions queue;
+  WallPacerOptions pacing;
+  WallTime wall = realWallTime();
+
+  /// Makes a heartbeat at the moment of sending. Called again, at a later time, when the budget made it wait.
+  /// None when empty.
+  std::function<Packet(int64_t now_us)> make_heartbeat;
+
+  /// Writes the time of sending into a copy of an offered packet, which must keep its size. None when empty.
+  std::function<void(Packet& packet, int64_t now_us)> stamp;
+
+  /// The process came back after a crash and may have used its whole budget up to this mission time.
+  std::optional<int64_t> resumed_at_us;
+};
+
+/// The single choke point: everything a node sends passes here, is counted, and on the link kept in budget.
+/// Order: a heartbeat when due, then SendQueue's. Who is first waits for the budget; nothing smaller
+/// overtakes.
+class Sender {
+ public:
+  static constexpr int64_t kNever = std::numeric_limits<int64_t>::max();
+
+  /// Both buses outlive the sender. Without a `local` bus, sendLocal() sends nothing.
+  /// @throws std::invalid_argument when an option is out of range.
+  Sender(Bus& link, Bus* local, SenderOptions options);
+
+  /// As SendQueue.
+  void offer(TrafficClass traffic, std::string_view key, Packet packet) {
+    queue_.offer(traffic, key, std::move(packet));
+  }
+  void forget(std::string_view key) { queue_.forget(key); }
+
+  /// Sends all that may go out at mission time now_us, and returns the mission time, > now_us, at which more
+  /// could, or kNever. A budget in use is only used up when pump() is called again at that very time: callers
+  /// who pump once a second get little more than half of it. May sleep, to pace in wall time.
+  int64_t pump(int64_t now_us);
+
+  /// Sends at once on the local bus: class local, paced in wall time, outside the budget.
+  void sendLocal(const Packet& packet);
+
+  /// For the caller to count what it refused from others.
+  Stats& stats() { return stats_; }
+  const Stats& stats() const { return stats_; }
+  const SendQueue& queue() const { return queue_; }
+  WorstWindow worstWindow() const { return budget_.worst(); }
+
+ private:
+  int64_t earliest(int64_t now_us, const Packet& packet) const;
+  void send(const Packet& packet, TrafficClass traffic, bool resent, int64_t now_us);
+
+  SenderOptions options_;
+  Bus& link_;
+  Bus* local_;
+  Budget budget_;
+  SendQueue queue_;
+  HeartbeatPacer heartbeat_;
+  WallPacer pacer_;
+  Stats stats_;
+};
+
+}  // namespace shoal::comms
