@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,14 +26,19 @@ class WordExtractor {
 
   /// Words of one image. Words at pixels without valid depth are dropped and counted. Pure.
   /// @throws std::invalid_argument when images of the observation differ in size or type.
-  virtual world::WordsInCells extract(const world::Observation& observation, const world::Grid& grid) const = 0;
+  virtual world::WordsInCells extract(const world::Observation& observation,
+                                      const world::Grid& grid) const = 0;
 
   int32_t vocabularySize() const { return groups().back().first + groups().back().size; }
 };
 
-/// The extractor of a profile ("paper"). Profiles that are not built yet are refused by name.
-/// @param vocabulary_dir  folder of the shipped vocabulary files.
-/// @throws std::invalid_argument naming the profile or the file that is missing, corrupt or of another build.
-std::unique_ptr<WordExtractor> makeWordExtractor(const std::string& profile, const std::string& vocabulary_dir);
+/// The extractor of a profile ("paper") with the vocabulary that is built into this library.
+/// @throws std::invalid_argument naming a profile that is unknown or not built yet.
+std::unique_ptr<WordExtractor> makeWordExtractor(const std::string& profile);
+
+/// The same with a vocabulary of the caller's, in the format of vocabulary.h.
+/// @throws std::invalid_argument naming the profile, or what is wrong with the vocabulary.
+std::unique_ptr<WordExtractor> makeWordExtractor(const std::string& profile,
+                                                 std::span<const uint8_t> vocabulary_bytes);
 
 }  // namespace shoal::vision

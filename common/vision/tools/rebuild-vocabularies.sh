@@ -1,0 +1,32 @@
+#!/bin/bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Rebuilds common/vision/vocabularies from photographs and textures of Debian packages. The packages are
+# unpacked into a temporary folder, not installed. On Debian 12:
+#
+#     common/vision/tools/rebuild-vocabularies.sh [BUILD_FOLDER]     (default: build)
+set -euo pipefail
+
+root=$(cd "$(dirname "$0")/../../.." && pwd)
+build=$(realpath "${1:-$root/build}")
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+# Exact versions: other pictures would give other words.
+packages=(lomiri-wallpapers-16.04=20.04.0-2 mate-backgrounds=1.26.0-1 colobot-common-textures=0.2.0-2)
+
+cmake --build "$build" --target shoal_build_vocabulary >&2
+
+cd "$work"
+apt-get download "${packages[@]}" >&2
+for package in *.deb; do dpkg-deb -x "$package" unpacked; done
+
+# Photographs of landscapes, plants and ground; textures of terrain. Drawings, logos and sprites stay out.
+mkdir photographs textures
+cp unpacked/usr/share/backgrounds/*.jpg photographs/
+cp unpacked/usr/share/backgrounds/mate/nature/*.jpg unpacked/usr/share/backgrounds/mate/abstract/Elephants.jpg \
+   photographs/
+terrain=unpacked/usr/share/games/colobot/textures
+cp "$terrain"/{chili,desert,dirty,green,lava,mars,mix,water}*.png "$terrain"/{moon103,roca2,rocb2,terra002}.png \
+   textures/
+
+"$build/bin/shoal_build_vocabulary" "$root/common/vision/vocabularies/orb_5000.voc" photographs textures

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "shoal/vision/word_extractor.h"
+
+#include <stdexcept>
+
+#include "shoal/vision/paper_words.h"
+#include "shoal/vision/shipped_vocabulary.h"
+#include "shoal/vision/vocabulary.h"
+
+namespace shoal::vision {
+
+std::unique_ptr<WordExtractor> makeWordExtractor(const std::string& profile) {
+  return makeWordExtractor(profile, shippedOrbVocabulary());
+}
+
+std::unique_ptr<WordExtractor> makeWordExtractor(const std::string& profile,
+                                                 std::span<const uint8_t> vocabulary_bytes) {
+  if (profile == "paper") return std::make_unique<PaperWords>(Vocabulary::parse(vocabulary_bytes));
+  if (profile == "best") throw std::invalid_argument("profile \"best\" is not built yet; use \"paper\"");
+  throw std::invalid_argument("no profile \"" + profile + "\"; use \"paper\"");
+}
+
+}  // namespace shoal::vision
