@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace shoal::wire {
+
+/// The longest encoded message that can stand in a datagram of 1400 bytes: LCM's header takes 8, the channel
+/// at least its NUL. Senders subtract the length of their channel too: see maxPayload().
+inline constexpr size_t kMaxMessageBytes = 1400 - 8 - 1;
+
+/// What may be sent on a channel of that many letters, so that LCM header, channel, NUL and message together
+/// stay within 1400 bytes. @p channel_length at most 63, LCM's own limit.
+constexpr size_t maxPayload(size_t channel_length) { return kMaxMessageBytes - channel_length; }
+
+// Caps on what one message may make a receiver hold. No honest sender reaches them.
+inline constexpr int32_t kMaxRobotNumber = 9999;
+inline constexpr int32_t kMaxParts = 255;
+inline constexpr int32_t kMaxBrickCells = 16 * 16 * 16;
+inline constexpr int32_t kMaxWordsPerPart = 65536;
+inline constexpr int32_t kMaxWordGroups = 64;
+inline constexpr int32_t kMaxVocabulary = 1 << 20;
+inline constexpr int32_t kMaxRoster = 256;
+inline constexpr int32_t kMaxCorrespondencesPerChunk = 16384;
+inline constexpr int32_t kMaxLabelsPerChunk = 4096;
+inline constexpr int32_t kMaxRobotsPerLabel = 256;
+inline constexpr size_t kMaxNameBytes = 64;
+inline constexpr int32_t kMaxChunks = 32767;
+
+/// Mission times lie in [0, kMaxTimeUs]: sums and differences of two cannot overflow.
+inline constexpr int64_t kMaxTimeUs = (int64_t{1} << 62) - 1;
+
+}  // namespace shoal::wire

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "shoal/wire/message_kind.h"
+
+#include <shoal/brick_t.hpp>
+#include <shoal/certainty_t.hpp>
+#include <shoal/heartbeat_t.hpp>
+#include <shoal/labels_t.hpp>
+#include <shoal/map_t.hpp>
+#include <shoal/matches_t.hpp>
+#include <shoal/topics_t.hpp>
+
+#include "shoal/wire/bytes.h"
+#include "shoal/wire/limits.h"
+
+namespace shoal::wire {
+
+std::optional<MessageKind> parseChannelKind(std::string_view text) {
+  for (size_t k = 0; k < kNumMessageKinds; ++k) {
+    if (kChannelKinds[k] == text) return static_cast<MessageKind>(k);
+  }
+  return std::nullopt;
+}
+
+int64_t fingerprintOf(MessageKind kind) {
+  switch (kind) {
+    case MessageKind::kHeartbeat:
+      return heartbeat_t::getHash();
+    case MessageKind::kTopics:
+      return topics_t::getHash();
+    case MessageKind::kBrick:
+      return brick_t::getHash();
+    case MessageKind::kCertainty:
+      return certainty_t::getHash();
+    case MessageKind::kMatches:
+      return matches_t::getHash();
+    case MessageKind::kLabels:
+      return labels_t::getHash();
+    case MessageKind::kMap:
+      return map_t::getHash();
+  }
+  SHOAL_DEMAND(false);
+  return 0;
+}
+
+std::optional<MessageKind> kindOf(int64_t fingerprint) {
+  for (size_t k = 0; k < kNumMessageKinds; ++k) {
+    if (fingerprintOf(static_cast<MessageKind>(k)) == fingerprint) return static_cast<MessageKind>(k);
+  }
+  return std::nullopt;
+}
+
+Result<Header> peek(std::span<const uint8_t> bytes) {
+  if (bytes.size() < 20) return DecodeError::kTooShort;
+  if (bytes.size() > kMaxMessageBytes) return DecodeError::kTooLong;
+  const auto kind = kindOf(static_cast<int64_t>(bigEndian(bytes.first(8))));
+  if (!kind) return DecodeError::kWrongType;
+  const auto us = static_cast<int64_t>(bigEndian(bytes.subspan(8, 8)));
+  if (us < 0 || us > kMaxTimeUs) return DecodeError::kBadField;
+  return Header{*kind, {us}, static_cast<int32_t>(bigEndian(bytes.subspan(16, 4)))};
+}
+
+}  // namespace shoal::wire

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "shoal/mapping/piece.h"
+#include "shoal/wire/bytes.h"
+#include "shoal/wire/message_kind.h"
+#include "shoal/wire/result.h"
+
+namespace shoal::wire {
+
+/// What kind of message a piece travels in: its channel.
+MessageKind kindOf(const mapping::Piece& piece);
+
+/// Why a piece may not travel, e.g. "cells are not ascending"; empty when it may. The rules are those of
+/// mapping/piece.h and the caps of limits.h. Costs a pass over the piece.
+std::string fault(const mapping::Piece& piece);
+
+/// A piece as a message of type topics_t, brick_t or certainty_t. Lossless; equal pieces (mission, time) are
+/// equal bytes.
+///
+/// @param mission  Id of the mission.
+/// @param time     Mission time of sending, in [0, kMaxTimeUs].
+/// @throws std::invalid_argument naming the fault() of the piece, or its size when it is above
+///         kMaxMessageBytes: cutToFit() first.
+Bytes encode(const mapping::Piece& piece, int32_t mission, world::Timestamp time);
+
+/// Cuts a whole piece (part 0 of 1, of any size) into parts of at most `max_payload` encoded bytes.
+///
+/// A topic's words go by count, heaviest first and ties to the lower word, so that part 0 alone is the best
+/// summary of its size; bricks and certainties are cut into runs of cells in canonical order. Deterministic.
+/// Parts are filled by bisection: about 12 encodings a part, one when everything fits.
+///
+/// @throws std::invalid_argument when the piece is faulty or already a part, when not even one element fits
+///         into `max_payload`, or when more than 255 parts would be needed. The last cannot happen to
+///         vocabularies up to 65536 words and messages of kMaxMessageBytes: even 31 random bits a count
+///         take 226 parts.
+std::vector<mapping::Piece> cutToFit(const mapping::Piece& whole, size_t max_payload);
+
+/// The inverse of encode(). Whatever the bytes are, it returns, within the memory of one valid piece, and
+/// what it returns encodes to the very same bytes.
+///
+/// @param kind  What the channel announced; another type is refused.
+Result<mapping::Piece> decodePiece(MessageKind kind, std::span<const uint8_t> bytes);
+
+}  // namespace shoal::wire
