@@ -16,9 +16,10 @@
 
 namespace shoal::fusion_node {
 
-/// What one process knows of a mission from all that it has heard: the replicated state, the last heartbeat of
-/// every node, and the map they add up to. Used by fusion nodes, by robots that fuse, and to read recordings.
-/// Nothing that is heard is trusted: what is bad is counted in Stats under its reason and left out.
+/// What one process knows of a mission from all that it has heard: the replicated state, the last heartbeat
+/// of every node, and the map they add up to. Used by fusion nodes, by robots that fuse, and to read
+/// recordings. Nothing that is heard is trusted: what is bad is counted in Stats under its reason and left
+/// out.
 class MissionState {
  public:
   /// @param mission  Only messages of this mission enter.
@@ -48,9 +49,12 @@ class MissionState {
   uint64_t mapDigest() const { return map_digest_; }
 
   /// For the heartbeat: how much is held of every robot.
-  std::vector<wire::RosterEntry> roster() const;
+  std::vector<wire::Heartbeat::Share> roster() const;
   /// True when all is held that this robot says it has.
   bool holdsWhole(const std::string& robot) const;
+
+  /// Edge of a cell as the lowest robot says, metres; 1 before any was heard.
+  double cellSize() const;
 
   /// Everything as one value to ask questions of, with the map as of the last refreshMap().
   mapping::MissionView view() const;

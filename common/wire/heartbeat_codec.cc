@@ -27,6 +27,7 @@ std::string fault(const Heartbeat& h) {
   if (!std::isfinite(h.x_m) || !std::isfinite(h.y_m) || !std::isfinite(h.z_m))
     return "position is not finite";
   if (!std::isfinite(h.ms_per_frame) || h.ms_per_frame < 0) return "ms_per_frame is not a duration";
+  if (!std::isfinite(h.cell_size_m) || !(h.cell_size_m > 0)) return "cell_size_m is not a length";
   for (const int64_t bytes : h.class_bytes) {
     if (bytes < 0) return "class_bytes is negative";
   }
@@ -95,6 +96,7 @@ Bytes encodeValid(const Heartbeat& h, size_t num_shares) {
   m.map_digest = static_cast<int64_t>(h.map_digest);
   m.map_of_state = static_cast<int64_t>(h.map_of_state);
   m.vocabulary = static_cast<int64_t>(h.vocabulary);
+  m.cell_size_m = h.cell_size_m;
   m.host = h.host;
   m.pid = h.pid;
   m.x_m = h.x_m;
@@ -141,6 +143,7 @@ Result<Heartbeat> decodeHeartbeat(std::span<const uint8_t> bytes) {
   h.map_digest = static_cast<uint64_t>(m.map_digest);
   h.map_of_state = static_cast<uint64_t>(m.map_of_state);
   h.vocabulary = static_cast<uint64_t>(m.vocabulary);
+  h.cell_size_m = m.cell_size_m;
   h.host = m.host;
   h.pid = m.pid;
   h.x_m = m.x_m;

@@ -45,6 +45,7 @@ struct Heartbeat {
   uint64_t map_digest = 0;          ///< of its fused map; 0: it does not fuse
   uint64_t map_of_state = 0;        ///< state digest the map was made from; 0: it does not fuse
   uint64_t vocabulary = 0;          ///< fingerprint of the visual vocabulary
+  double cell_size_m = 1;           ///< edge of a map cell, finite, > 0
   int32_t host = 0;                 ///< hash of the host's name
   int32_t pid = 0;                  ///< process id, >= 0
   float x_m = 0, y_m = 0, z_m = 0;  ///< position in the world frame, finite
@@ -62,7 +63,7 @@ struct Heartbeat {
 /// The 32 bits of a robot's digest that travel in rosters.
 constexpr uint32_t shareDigest(uint64_t digest) { return static_cast<uint32_t>(digest ^ digest >> 32); }
 
-/// A heartbeat as heartbeat_t: 134 bytes, 6 to 60 for the classes, about 4 a robot of the roster.
+/// A heartbeat as heartbeat_t: 142 bytes, 6 to 60 for the classes, about 4 a robot of the roster.
 ///
 /// A roster that does not fit is cut at its high end; 256 robots fit when their numbers have few gaps.
 /// @throws std::invalid_argument naming what is out of range, or when `max_payload` is below 200.

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstdio>
+#include <exception>
+#include <memory>
+#include <stdexcept>
+
+#include <spdlog/spdlog.h>
+#include <CLI/CLI.hpp>
+
+#include "fusion_node/node.h"
+#include "fusion_node/process.h"
+#include "shoal/comms/channels.h"
+#include "shoal/comms/lcm_bus.h"
+#include "shoal/comms/lcm_url.h"
+#include "shoal/version.h"
+
+namespace {
+
+using namespace shoal;  // NOLINT: a main file
+
+int run(const fusion_node::NodeOptions& options, const std::string& url) {
+  comms::LcmBus link(url);
+  std::unique_ptr<comms::LcmBus> local;
+  if (comms::localUrl(url) != comms::composeUrl(comms::parseUrl(url))) {
+    local = std::make_unique<comms::LcmBus>(comms::localUrl(url));
+  }
+  fusion_node::Node node(options, link, local ? *local : link);
+  spdlog::info("listening on {}, mission {}, matcher {}", link.url(), options.mission,
+               options.matcher.matcher);
+  while (!fusion_node::stopRequested()) node.turn(20);
+  node.finish();
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  fusion_node::NodeOptions options;
+  std::string url = comms::kDefaultUrl, rate = "1", mission = "shoal", log_level = "info", sigma = "0.75";
+  CLI::App app{"Hears a team of robots, matches their labels and republishes one consistent map.",
+               "fusion_node"};
+  app.set_version_flag("--version", std::string("fusion_node ") + version() + " (" + commit() + ")");
+  app.set_config("--config", "", "mission.toml: any of these flags");
+  app.allow_config_extras(true);
+  app.add_option("--node", options.name, "name of this node, capitals and digits")->capture_default_str();
+  app.add_option("--lcm-url", url, "multicast group of the link")
+      ->envname("SHOAL_LCM_URL")
+      ->capture_default_str();
+  app.add_option("--budget", options.budget, "bytes per second of mission time on the link, 0 = unlimited")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  app.add_option("--matcher", options.matcher.matcher, "id, hungarian or clear")->capture_default_str();
+  auto* similarity = app.add_option("--similarity", options.matcher.similarity,
+                                    "cosine, overlap, l1 or l2 (default: l2 for hungarian, else cosine)");
+  app.add_option("--sigma", sigma, "least similarity of a match, in (0, 1]")->capture_default_str();
+  app.add_option("--mission", mission, "number or name that all processes of a mission share")
+      ->capture_default_str();
+  app.add_option("--rate", rate, "mission seconds per wall second: 1, 10, or max = as the robots")
+      ->capture_default_str();
+  app.add_option("--state", options.state_dir, "folder in which the node answers `operator_console --node`");
+  app.add_option("--out", options.out_dir, "folder for global_map.csv and labels.csv at the end");
+  app.add_option("--log-level", log_level, "trace, debug, info, warn, error or off")->capture_default_str();
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  try {
+    fusion_node::setUpLog(options.name, log_level);
+    fusion_node::catchStopSignals();
+    options.mission = fusion_node::missionId(mission);
+    options.rate = fusion_node::parseRate(rate);
+    options.matcher.sigma = fusion_node::parseSigma(sigma);
+    if (similarity->count() == 0)
+      options.matcher.similarity = fusion_node::usualSimilarity(options.matcher.matcher);
+    comms::channelName(options.name, "HEARTBEAT");  // a bad node name is a bad flag
+    return run(options, url);
+  } catch (const std::invalid_argument& error) {
+    std::fprintf(stderr, "fusion_node: %s\n", error.what());
+    return 2;
+  } catch (const std::exception& error) {
+    spdlog::error("{}", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fusion_node/mission_state.h"
+
+#include <algorithm>
+
+#include "shoal/comms/channels.h"
+#include "shoal/wire/message_kind.h"
+#include "shoal/wire/piece_codec.h"
+
+namespace shoal::fusion_node {
+namespace {
+
+// A hostile peer must not make us remember without end.
+constexpr size_t kMaxNodes = 300;
+constexpr size_t kMaxOtherMissions = 16;
+
+std::string_view phaseName(wire::Phase phase) {
+  switch (phase) {
+    case wire::Phase::kFlying:
+      return "flying";
+    case wire::Phase::kLanded:
+      return "landed";
+    case wire::Phase::kLeaving:
+      return "leaving";
+    case wire::Phase::kNode:
+      return "node";
+  }
+  return "unknown";
+}
+
+}  // namespace
+
+MissionState::MissionState(int32_t mission, const matching::MatcherOptions& matcher)
+    : mission_(mission), matcher_(matcher) {
+  matching::match(matching::DescriptorSet{}, matcher_);  // wrong options are the caller's mistake: say so now
+}
+
+void MissionState::hear(const comms::Packet& packet, comms::Stats& stats) {
+  const auto channel = comms::parseChannel(packet.channel);
+  if (!channel) return stats.countRejected("channel");
+  const auto header = wire::peek(packet.bytes);
+  if (!header) return stats.countRejected(wire::name(header.error()));
+  if (wire::channelKind(header->kind) != channel->kind) return stats.countRejected("wrong type");
+  if (header->mission != mission_) {
+    if (other_missions_.size() < kMaxOtherMissions) other_missions_.insert(header->mission);
+    return stats.countRejected("other mission");
+  }
+  switch (header->kind) {
+    case wire::MessageKind::kHeartbeat: {
+      const auto heartbeat = wire::decodeHeartbeat(packet.bytes);
+      if (!heartbeat) return stats.countRejected(wire::name(heartbeat.error()));
+      if (!heartbeats_.contains(channel->node) && heartbeats_.size() >= kMaxNodes) {
+        return stats.countRejected("too many nodes");
+      }
+      wire::Heartbeat& held = heartbeats_[channel->node];
+      if (heartbeat->time >= held.time) held = *heartbeat;
+      latest_ = std::max(latest_, heartbeat->time);
+      return;
+    }
+    case wire::MessageKind::kTopics:
+    case wire::MessageKind::kBrick:
+    case wire::MessageKind::kCertainty: {
+      const auto piece = wire::decodePiece(header->kind, packet.bytes);
+      if (!piece) return stats.countRejected(wire::name(piece.error()));
+      if (name(piece->key.robot) != channel->node) return stats.countRejected("wrong sender");
+      switch (apply(*piece)) {
+        case mapping::Applied::kConflict:
+          return stats.countRejected("conflict");
+        case mapping::Applied::kRejected:
+          return stats.countRejected("over limit");
+        default:
+          return;
+      }
+    }
+    default:
+      return;  // what fusion nodes publish for people is not part of the state
+  }
+}
+
+mapping::Applied MissionState::apply(const mapping::Piece& piece) {
+  const mapping::Applied applied = beliefs_.apply(piece);
+  if (applied == mapping::Applied::kConflict) ++conflicts_;
+  return applied;
+}
+
+const mapping::GlobalMap& MissionState::refreshMap() {
+  if (mapIsStale()) {
+    map_ = mapping::fuse(beliefs_, matcher_);
+    map_digest_ = map_.digest();
+  }
+  return map_;
+}
+
+std::vector<wire::Heartbeat::Share> MissionState::roster() const {
+  std::vector<wire::Heartbeat::Share> roster;
+  for (const world::RobotId robot : beliefs_.robots()) {
+    roster.push_back({robot, wire::shareDigest(beliefs_.digestOf(robot))});
+  }
+  return roster;
+}
+
+bool MissionState::holdsWhole(const std::string& robot) const {
+  const auto id = world::parseRobotId(robot);
+  const auto said = heartbeats_.find(robot);
+  return id && said != heartbeats_.end() && said->second.own_digest == beliefs_.digestOf(*id);
+}
+
+double MissionState::cellSize() const {
+  for (const auto& [name, heartbeat] : heartbeats_)
+    if (heartbeat.phase != wire::Phase::kNode) return heartbeat.cell_size_m;
+  return 1.0;
+}
+
+mapping::MissionView MissionState::view() const {
+  mapping::MissionView view{.mission = mission_, .cell_size_m = cellSize(), .map = map_, .nodes = {}};
+  for (const auto& [name, h] : heartbeats_) {
+    view.nodes.push_back({.name = name,
+                          .phase = std::string(phaseName(h.phase)),
+                          .heard_s = h.time.seconds(),
+                          .observation = h.observation,
+                          .num_observations = h.num_observations,
+                          .topics = h.num_topics,
+                          .cells = h.num_cells,
+                          .bytes_sent = h.bytes_sent,
+                          .budget = h.budget,
+                          .queue_bytes = h.queue_bytes,
+                          .ms_per_frame = h.ms_per_frame,
+                          .x_m = h.x_m,
+                          .y_m = h.y_m,
+                          .z_m = h.z_m,
+                          .rejected = h.rejected,
+                          .conflicts = h.conflicts,
+                          .heard_whole = holdsWhole(name)});
+  }
+  std::ranges::stable_sort(view.nodes, {}, [](const mapping::NodeStatus& n) {
+    const auto robot = world::parseRobotId(n.name);
+    return std::pair(robot ? number(*robot) : INT32_MAX, n.name);
+  });
+  return view;
+}
+
+}  // namespace shoal::fusion_node

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fusion_node/node.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <nlohmann/json.hpp>
+
+#include <spdlog/spdlog.h>
+
+#include "fusion_node/process.h"
+#include "shoal/comms/channels.h"
+#include "shoal/mapping/atomic_file.h"
+#include "shoal/mapping/map_files.h"
+#include "shoal/wire/labels_codec.h"
+#include "shoal/wire/map_codec.h"
+#include "shoal/wire/matches_codec.h"
+
+namespace shoal::fusion_node {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Wall time between two fusions, and between two whole maps on the local bus: people look, no result waits.
+constexpr int64_t kFusePeriodMs = 200;
+constexpr int64_t kPublishPeriodMs = 1000;
+
+comms::SenderOptions senderOptions(int64_t budget, std::function<comms::Packet(int64_t)> make_heartbeat) {
+  comms::SenderOptions options;
+  options.bytes_per_s = budget;
+  options.make_heartbeat = std::move(make_heartbeat);
+  return options;
+}
+
+}  // namespace
+
+Node::Node(const NodeOptions& options, comms::Bus& link, comms::Bus& local)
+    : options_(options),
+      state_(options.mission, options.matcher),
+      link_(link),
+      local_(local),
+      clock_(options.rate),
+      sender_(link, &local,
+              senderOptions(options.budget, [this](int64_t now_us) { return heartbeat(now_us); })) {
+  if (!options.state_dir.empty()) {
+    queries_.emplace(options.state_dir, [this](const Json& question) { return answer(question); });
+  }
+}
+
+int64_t Node::wallMs() const {
+  return std::chrono::duration_cast<std::chrono::milliseconds>(
+             std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
+void Node::turn(int timeout_ms) {
+  const auto hear = [this](const comms::Packet& packet) { state_.hear(packet, sender_.stats()); };
+  link_.receive(timeout_ms, hear);
+  if (options_.rate == 0) clock_.advanceTo(state_.latestTime().us);
+
+  const int64_t wall = wallMs();
+  if (state_.mapIsStale() && wall - fused_at_ms_ >= kFusePeriodMs) {
+    state_.refreshMap();
+    fused_at_ms_ = wallMs();
+    const auto offer = [this](std::string_view kind, std::vector<wire::Bytes> chunks) {
+      const std::string channel = comms::channelName(options_.name, kind);
+      for (size_t i = 0; i < chunks.size(); ++i) {
+        sender_.offer(comms::TrafficClass::kMatches, channel + "/" + std::to_string(i),
+                      {channel, std::move(chunks[i])});
+      }
+    };
+    const world::Timestamp now{clock_.now()};
+    const auto limit = [this](std::string_view kind) {
+      return wire::maxPayload(comms::channelName(options_.name, kind).size());
+    };
+    offer("MATCHES", wire::encodeMatches(state_.map().correspondences, state_.mapDigest(), options_.mission,
+                                         now, limit("MATCHES")));
+    offer("LABELS", wire::encodeLabels(state_.map().labels, state_.mapDigest(), options_.mission, now,
+                                       limit("LABELS")));
+  }
+  if (state_.mapDigest() != published_digest_ && wall - published_at_ms_ >= kPublishPeriodMs) publishMap();
+  sender_.pump(clock_.now());
+  if (queries_) queries_->poll();
+}
+
+void Node::publishMap() {
+  const std::string channel = comms::channelName(options_.name, "MAP");
+  for (wire::Bytes& chunk :
+       wire::encodeMap(state_.map(), state_.mapDigest(), options_.mission, world::Timestamp{clock_.now()},
+                       wire::maxPayload(channel.size()))) {
+    sender_.sendLocal({channel, std::move(chunk)});
+  }
+  published_digest_ = state_.mapDigest();
+  published_at_ms_ = wallMs();
+}
+
+comms::Packet Node::heartbeat(int64_t now_us) {
+  uint64_t rejected = 0;
+  for (const auto& [reason, count] : sender_.stats().rejected) rejected += count;
+  wire::Heartbeat h;
+  h.time = {now_us};
+  h.mission = options_.mission;
+  h.phase = wire::Phase::kNode;
+  h.observation = -1;
+  h.num_cells = static_cast<int32_t>(state_.map().cells.size());
+  h.state_digest = state_.beliefs().digest();
+  h.map_digest = state_.mapDigest();
+  h.map_of_state = state_.map().state_digest;
+  h.cell_size_m = state_.cellSize();
+  h.host = hostHash();
+  h.pid = ::getpid();
+  h.bytes_sent = static_cast<int64_t>(sender_.stats().linkBytes());
+  h.budget = static_cast<int32_t>(options_.budget);
+  h.queue_bytes = static_cast<int32_t>(sender_.queue().waitingBytes());
+  h.rejected = static_cast<int32_t>(std::min<uint64_t>(rejected, INT32_MAX));
+  h.conflicts = state_.conflicts();
+  for (size_t i = 0; i < comms::kNumTrafficClasses; ++i) {
+    h.class_bytes[i] = static_cast<int64_t>(sender_.stats().sent[i].bytes);
+  }
+  h.roster = state_.roster();
+  return {comms::channelName(options_.name, "HEARTBEAT"), wire::encode(h)};
+}
+
+nlohmann::ordered_json Node::answer(const Json& question) {
+  const std::string query = question.value("query", "");
+  state_.refreshMap();
+  mapping::MissionView view = state_.view();
+  if (query == "status") return mapping::statusAnswer(view);
+  if (query == "labels") return mapping::labelsAnswer(view);
+  if (query == "at" && question.contains("x") && question["x"].is_number() && question.contains("y") &&
+      question["y"].is_number()) {
+    return mapping::atAnswer(view, question["x"], question["y"]);
+  }
+  if (query == "map") {
+    const world::Grid grid(view.cell_size_m);
+    return {{"cell_size_m", view.cell_size_m},
+            {"global_map_csv", mapping::globalMapCsv(view.map, grid)},
+            {"labels_csv", mapping::labelsCsv(view.map, grid)}};
+  }
+  return {{"error", "unknown question; questions are status, labels, at (with x and y) and map"}};
+}
+
+void Node::finish() {
+  for (int turns = 0; turns < 50; ++turns) {  // what already waits in the socket
+    if (link_.receive(0, [this](const comms::Packet& packet) { state_.hear(packet, sender_.stats()); }) == 0)
+      break;
+  }
+  state_.refreshMap();
+  publishMap();
+  for (const auto& [reason, count] : sender_.stats().rejected)
+    spdlog::warn("refused {} messages: {}", count, reason);
+  if (options_.out_dir.empty()) return;
+  const world::Grid grid(state_.cellSize());
+  mapping::writeFileAtomically(options_.out_dir + "/global_map.csv",
+                               mapping::globalMapCsv(state_.map(), grid));
+  mapping::writeFileAtomically(options_.out_dir + "/labels.csv", mapping::labelsCsv(state_.map(), grid));
+  spdlog::info("map of {} cells, {} labels written to {}", state_.map().cells.size(),
+               state_.map().labels.size(), options_.out_dir);
+}
+
+}  // namespace shoal::fusion_node

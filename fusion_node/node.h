@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "fusion_node/mission_state.h"
+#include "fusion_node/query_server.h"
+#include "shoal/comms/bus.h"
+#include "shoal/comms/mission_clock.h"
+#include "shoal/comms/sender.h"
+
+namespace shoal::fusion_node {
+
+struct NodeOptions {
+  std::string name = "OPERATOR";  ///< [A-Z0-9]{1,16}
+  int32_t mission = 1;
+  int64_t budget = 2000;  ///< bytes per second of mission time on the link, 0 = unlimited
+  double rate = 1.0;      ///< seconds of mission time per wall second; 0 = follow the robots
+  matching::MatcherOptions matcher;
+  std::string state_dir;  ///< where questions are answered; empty = nowhere
+  std::string out_dir;    ///< where the map's files go at the end; empty = nowhere
+};
+
+/// A fusion node: hears everybody, fuses when something changed, tells the link what matches what and the
+/// local bus how the map looks, and answers questions.
+class Node {
+ public:
+  /// `link` and `local` outlive the node.
+  /// @throws std::invalid_argument naming a wrong option; std::runtime_error when the state folder is taken.
+  Node(const NodeOptions& options, comms::Bus& link, comms::Bus& local);
+
+  /// One turn of the loop: hear, fuse when due, send what is due. Waits up to `timeout_ms` for something.
+  void turn(int timeout_ms);
+
+  /// Fuses what was heard last, tells the local bus, and writes global_map.csv and labels.csv.
+  /// @throws std::runtime_error naming the file that cannot be written.
+  void finish();
+
+  const MissionState& state() const { return state_; }
+
+ private:
+  comms::Packet heartbeat(int64_t now_us);
+  void publishMap();
+  nlohmann::ordered_json answer(const nlohmann::ordered_json& question);
+  int64_t wallMs() const;
+
+  NodeOptions options_;
+  MissionState state_;
+  comms::Bus& link_;
+  comms::Bus& local_;
+  comms::MissionClock clock_;
+  comms::Sender sender_;
+  std::optional<QueryServer> queries_;
+  uint64_t published_digest_ = 0;
+  int64_t fused_at_ms_ = 0, published_at_ms_ = 0;
+};
+
+}  // namespace shoal::fusion_node

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "robot_agent/agent.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+#include <spdlog/spdlog.h>
+
+#include "fusion_node/process.h"
+#include "shoal/comms/channels.h"
+#include "shoal/mapping/atomic_file.h"
+#include "shoal/mapping/belief_files.h"
+#include "shoal/mapping/map_files.h"
+#include "shoal/wire/piece_codec.h"
+
+namespace shoal::robot_agent {
+namespace {
+
+using fusion_node::stopRequested;
+
+constexpr int64_t kSecondUs = 1'000'000;
+// As fast as possible still leaves the others time to listen: wall time for a mission second after landing.
+constexpr auto kBusySecond = std::chrono::milliseconds(10);
+constexpr auto kIdleSecond = std::chrono::milliseconds(30);
+
+comms::TrafficClass trafficOf(mapping::PieceKind kind) {
+  switch (kind) {
+    case mapping::PieceKind::kTopic:
+      return comms::TrafficClass::kTopics;
+    case mapping::PieceKind::kBrick:
+      return comms::TrafficClass::kBricks;
+    case mapping::PieceKind::kCertainty:
+      break;
+  }
+  return comms::TrafficClass::kCertainty;
+}
+
+std::string queueKey(const mapping::PieceKey& key, int32_t part) {
+  std::string text = std::to_string(static_cast<int>(key.kind));
+  for (const int32_t i : key.index) text += '/' + std::to_string(i);
+  return text + '/' + std::to_string(part);
+}
+
+void writeOut(const std::string& folder, const mapping::LocalBelief& belief, double cell_size_m,
+              const std::vector<mapping::StampedPose>& path) {
+  mapping::writeBelief(folder, belief, world::Grid(cell_size_m));
+  mapping::writeFileAtomically(folder + "/poses.txt", mapping::posesTxt(path));
+}
+
+}  // namespace
+
+Agent::Agent(const AgentOptions& options, world::ObservationSource& source, comms::Bus& bus)
+    : options_(options),
+      name_(name(options.explorer.robot)),
+      source_(source),
+      bus_(bus),
+      explorer_(options.explorer),
+      belief_{.robot = options.explorer.robot, .version = {}, .groups = {}, .topics = {}, .cells = {}},
+      others_(options.mission, options.matcher),
+      clock_(options.rate),
+      sender_(bus, nullptr, [&] {
+        comms::SenderOptions sender;
+        sender.bytes_per_s = options.budget;
+        sender.make_heartbeat = [this](int64_t now_us) { return heartbeat(now_us); };
+        return sender;
+      }()) {}
+
+void Agent::run() {
+  fly();
+  write();
+  if (!stopRequested()) linger();
+  if (options_.fuse) write();  // with the map as it ended
+  phase_ = wire::Phase::kLeaving;
+  sender_.pump(clock_.now());
+  for (const auto& [reason, count] : sender_.stats().rejected)
+    spdlog::warn("refused {} messages: {}", count, reason);
+}
+
+void Agent::fly() {
+  while (!stopRequested()) {
+    const auto observation = source_.next();
+    if (!observation) break;
+    passTimeUntil(observation->time.us);
+    takeIn(*observation);
+    passTimeUntil(clock_.now());
+  }
+  if (stopRequested()) return;
+  phase_ = wire::Phase::kLanded;
+  spdlog::info("landed after {} observations: {} topics, {} cells, {:.1f} ms each", path_.size(),
+               belief_.topics.size(), belief_.cells.size(),
+               path_.empty() ? 0.0 : total_ms_ / static_cast<double>(path_.size()));
+}
+
+void Agent::takeIn(const world::Observation& observation) {
+  const auto start = std::chrono::steady_clock::now();
+  explorer_.observe(observation);
+  belief_ = explorer_.belief();
+  path_.push_back({observation.time, observation.world_from_camera});
+  publish(observation.time);
+  const robot::StageTimes& t = explorer_.lastTimes();
+  const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
+  total_ms_ += took.count();
+  spdlog::debug("observation {}: words {:.1f} ms, topics {:.1f} ms, belief {:.1f} ms, publish {:.1f} ms",
+                observation.number, t.words_ms, t.topics_ms, t.belief_ms, took.count() - t.total());
+}
+
+void Agent::publish(world::Timestamp now) {
+  for (const mapping::Piece& whole : changes_.update(belief_)) {
+    const std::string channel = comms::channelName(name_, wire::channelKind(wire::kindOf(whole)));
+    const auto parts = wire::cutToFit(whole, wire::maxPayload(channel.size()));
+    for (const mapping::Piece& part : parts) {
+      own_.apply(part);
+      if (options_.fuse) others_.apply(part);
+      sender_.offer(trafficOf(part.key.kind), queueKey(part.key, part.part),
+                    {channel, wire::encode(part, options_.mission, now)});
+    }
+    int32_t& offered = num_parts_[whole.key];
+    for (auto stale = static_cast<int32_t>(parts.size()); stale < offered; ++stale) {
+      sender_.forget(queueKey(whole.key, stale));
+    }
+    offered = static_cast<int32_t>(parts.size());
+  }
+}
+
+// Sends what the budget allows and listens, until mission time `to_us`.
+void Agent::passTimeUntil(int64_t to_us) {
+  while (!stopRequested()) {
+    const int64_t now = clock_.now();
+    const int64_t next = std::min(sender_.pump(now), to_us);
+    const auto wait_ms = static_cast<int>(std::min<int64_t>(clock_.wallUntil(next) / 1000, 50));
+    listen(wait_ms);
+    if (now >= to_us) return;
+    if (options_.rate == 0) clock_.advanceTo(next);
+  }
+}
+
+void Agent::listen(int timeout_ms) {
+  bus_.receive(timeout_ms, [this](const comms::Packet& packet) {
+    if (!options_.fuse && !packet.channel.ends_with("_HEARTBEAT")) return;
+    others_.hear(packet, sender_.stats());
+  });
+  if (options_.fuse && phase_ != wire::Phase::kFlying) others_.refreshMap();
+  for (; warned_of_missions_ < others_.otherMissions().size(); ++warned_of_missions_) {
+    spdlog::warn("another mission is heard on this URL; ours is {}", options_.mission);
+  }
+  const auto twin = others_.heartbeats().find(name_);
+  if (!warned_of_twin_ && twin != others_.heartbeats().end() &&
+      (twin->second.pid != ::getpid() || twin->second.host != fusion_node::hostHash())) {
+    spdlog::error("another process (pid {}) also calls itself {}", twin->second.pid, name_);
+    warned_of_twin_ = true;
+  }
+}
+
+void Agent::linger() {
+  while (!stopRequested()) {
+    const auto start = std::chrono::steady_clock::now();
+    passTimeUntil(clock_.now() + kSecondUs);
+    if (!options_.linger && sender_.queue().waitingBytes() == 0 && isHeard()) {
+      spdlog::info("a fusion node holds all that {} had to say", name_);
+      return;
+    }
+    if (options_.rate == 0) {
+      std::this_thread::sleep_until(start + (sender_.queue().waitingBytes() > 0 ? kBusySecond : kIdleSecond));
+    }
+  }
+}
+
+bool Agent::isHeard() const {
+  bool heard = false;
+  for (const auto& [node, heartbeat] : others_.heartbeats()) {
+    if (node == name_ || heartbeat.roster.empty()) continue;
+    const auto mine =
+        std::ranges::find(heartbeat.roster, options_.explorer.robot, &wire::Heartbeat::Share::robot);
+    if (mine == heartbeat.roster.end() ||
+        mine->digest != wire::shareDigest(own_.digestOf(options_.explorer.robot))) {
+      return false;
+    }
+    heard = true;
+  }
+  return heard;
+}
+
+void Agent::write() {
+  if (options_.out_dir.empty()) return;
+  const std::string folder = options_.out_dir + "/robots/" + name_;
+  writeOut(folder, belief_, options_.explorer.cell_size_m, path_);
+  if (!options_.fuse) return;
+  const world::Grid grid(options_.explorer.cell_size_m);
+  others_.refreshMap();
+  mapping::writeFileAtomically(folder + "/global_map.csv", mapping::globalMapCsv(others_.map(), grid));
+  mapping::writeFileAtomically(folder + "/labels.csv", mapping::labelsCsv(others_.map(), grid));
+}
+
+comms::Packet Agent::heartbeat(int64_t now_us) {
+  uint64_t rejected = 0;
+  for (const auto& [reason, count] : sender_.stats().rejected) rejected += count;
+  wire::Heartbeat h;
+  h.time = {now_us};
+  h.mission = options_.mission;
+  h.epoch = options_.explorer.epoch;
+  h.phase = phase_;
+  h.observation = path_.empty() ? -1 : belief_.version.observation;
+  h.num_observations = source_.numObservations().value_or(0);
+  h.num_topics = static_cast<int32_t>(belief_.topics.size());
+  h.num_cells = static_cast<int32_t>(belief_.cells.size());
+  h.cell_size_m = options_.explorer.cell_size_m;
+  h.own_digest = own_.digestOf(options_.explorer.robot);
+  h.state_digest = options_.fuse ? others_.beliefs().digest() : own_.digest();
+  if (options_.fuse) {
+    h.map_digest = others_.mapDigest();
+    h.map_of_state = others_.map().state_digest;
+    h.roster = others_.roster();
+  }
+  h.vocabulary = explorer_.fingerprint();
+  h.host = fusion_node::hostHash();
+  h.pid = ::getpid();
+  if (!path_.empty()) {
+    const Eigen::Vector3f position = path_.back().world_from_camera.translation().cast<float>();
+    h.x_m = position.x();
+    h.y_m = position.y();
+    h.z_m = position.z();
+  }
+  h.bytes_sent = static_cast<int64_t>(sender_.stats().linkBytes());
+  h.budget = static_cast<int32_t>(options_.budget);
+  h.queue_bytes = static_cast<int32_t>(std::min<int64_t>(sender_.queue().waitingBytes(), INT32_MAX));
+  h.rejected = static_cast<int32_t>(std::min<uint64_t>(rejected, INT32_MAX));
+  h.conflicts = others_.conflicts() + (warned_of_twin_ ? 1 : 0);
+  h.ms_per_frame = path_.empty() ? 0.f : static_cast<float>(total_ms_ / static_cast<double>(path_.size()));
+  for (size_t i = 0; i < comms::kNumTrafficClasses; ++i) {
+    h.class_bytes[i] = static_cast<int64_t>(sender_.stats().sent[i].bytes);
+  }
+  return {comms::channelName(name_, "HEARTBEAT"), wire::encode(h)};
+}
+
+void runAlone(const AgentOptions& options, world::ObservationSource& source) {
+  robot::Explorer explorer(options.explorer);
+  std::vector<mapping::StampedPose> path;
+  const int32_t total = source.numObservations().value_or(0);
+  while (!stopRequested()) {
+    const auto observation = source.next();
+    if (!observation) break;
+    explorer.observe(*observation);
+    path.push_back({observation->time, observation->world_from_camera});
+    if (path.size() % 10 == 0) spdlog::info("{} of {} observations", path.size(), total);
+  }
+  const mapping::LocalBelief belief = explorer.belief();
+  writeOut(options.out_dir, belief, options.explorer.cell_size_m, path);
+  spdlog::info("flew {} observations alone: {} topics, {} cells", path.size(), belief.topics.size(),
+               belief.cells.size());
+}
+
+}  // namespace shoal::robot_agent

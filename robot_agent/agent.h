@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "fusion_node/mission_state.h"
+#include "shoal/comms/bus.h"
+#include "shoal/comms/mission_clock.h"
+#include "shoal/comms/sender.h"
+#include "shoal/mapping/belief_pieces.h"
+#include "shoal/mapping/poses_file.h"
+#include "shoal/robot/explorer.h"
+#include "shoal/world/source.h"
+
+namespace shoal::robot_agent {
+
+struct AgentOptions {
+  robot::ExplorerOptions explorer;
+  int32_t mission = 1;
+  int64_t budget = 2000;             ///< bytes per second of mission time on the link, 0 = unlimited
+  double rate = 1.0;                 ///< seconds of mission time per wall second, 0 = as fast as possible
+  bool fuse = false;                 ///< hold everybody's beliefs and fuse them too
+  matching::MatcherOptions matcher;  ///< for `fuse`
+  std::string out_dir;               ///< where robots/RNN/ goes; empty = nowhere
+  bool linger = false;               ///< stay after landing until told to stop, heard or not
+};
+
+/// One robot: flies its source, learns, tells the others under its budget, and listens.
+class Agent {
+ public:
+  /// `source` and `bus` outlive the agent.
+  Agent(const AgentOptions& options, world::ObservationSource& source, comms::Bus& bus);
+
+  /// Flies the source to its end, then keeps telling until a fusion node holds all it had to say (or, with
+  /// `linger`, until a stop is requested). A stop request ends it early; what was learnt is written all the
+  /// same.
+  /// @throws std::runtime_error when the output cannot be written.
+  void run();
+
+ private:
+  void fly();
+  void linger();
+  void takeIn(const world::Observation& observation);
+  void publish(world::Timestamp now);
+  void passTimeUntil(int64_t to_us);
+  void listen(int timeout_ms);
+  bool isHeard() const;
+  void write();
+  comms::Packet heartbeat(int64_t now_us);
+
+  AgentOptions options_;
+  std::string name_;
+  world::ObservationSource& source_;
+  comms::Bus& bus_;
+  robot::Explorer explorer_;
+  mapping::BeliefChanges changes_;
+  mapping::LocalBelief belief_;
+  mapping::BeliefStore own_;                        // what was said, for its digest
+  std::map<mapping::PieceKey, int32_t> num_parts_;  // keys in the send queue
+  fusion_node::MissionState others_;
+  comms::MissionClock clock_;
+  comms::Sender sender_;
+  std::vector<mapping::StampedPose> path_;
+  wire::Phase phase_ = wire::Phase::kFlying;
+  double total_ms_ = 0;
+  bool warned_of_twin_ = false;
+  size_t warned_of_missions_ = 0;
+};
+
+/// One robot that explores alone and tells nobody: the paper's comparator.
+void runAlone(const AgentOptions& options, world::ObservationSource& source);
+
+}  // namespace shoal::robot_agent

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstdio>
+#include <exception>
+#include <memory>
+#include <stdexcept>
+
+#include <spdlog/spdlog.h>
+#include <CLI/CLI.hpp>
+
+#include "fusion_node/process.h"
+#include "robot_agent/agent.h"
+#include "shoal/comms/lcm_bus.h"
+#include "shoal/comms/lcm_url.h"
+#include "shoal/version.h"
+#include "shoal/world/survey.h"
+
+namespace {
+
+using namespace shoal;  // NOLINT: a main file
+
+struct Flags {
+  std::string robot = "R00", source, url = comms::kDefaultUrl, rate = "1", mission = "shoal",
+              log_level = "info";
+  std::string sigma = "0.75", checkpoint;
+  bool single = false;
+  world::SurveyOptions survey;
+  robot_agent::AgentOptions agent;
+};
+
+int run(Flags flags) {
+  robot_agent::AgentOptions& options = flags.agent;
+  const auto id = world::parseRobotId(flags.robot);
+  if (!id) throw std::invalid_argument("robot \"" + flags.robot + "\" should be R00, R01, ... R9999");
+  if (number(*id) >= flags.survey.num_robots && !flags.single) {
+    throw std::invalid_argument("robot " + flags.robot + " is not of a team of " +
+                                std::to_string(flags.survey.num_robots) + "; raise --robots");
+  }
+  if (!flags.checkpoint.empty()) throw std::invalid_argument("--checkpoint is not built yet");
+  options.explorer.robot = *id;
+  options.mission = fusion_node::missionId(flags.mission);
+  options.rate = fusion_node::parseRate(flags.rate);
+  options.matcher.sigma = fusion_node::parseSigma(flags.sigma);
+
+  const auto world = world::openWorld(flags.source, options.explorer.seed);
+  if (flags.survey.cell_size_m <= 0) flags.survey.cell_size_m = world->defaultCellSize();
+  options.explorer.cell_size_m = flags.survey.cell_size_m;
+  const auto path = world::surveyPath(*world, flags.survey, number(*id), flags.single);
+  const auto source =
+      world::makeSurveySource(*world, path, flags.survey.intrinsics, flags.survey.frame_period_s);
+  if (flags.single) {
+    robot_agent::runAlone(options, *source);
+    return 0;
+  }
+  comms::LcmBus bus(flags.url);
+  spdlog::info("{} flies {} observations over {}, mission {}, on {}", flags.robot, path.size(), world->name(),
+               options.mission, bus.url());
+  robot_agent::Agent(options, *source, bus).run();
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Flags f;
+  CLI::App app{"One robot: explores, invents labels, and tells the others under a byte budget.",
+               "robot_agent"};
+  app.set_version_flag("--version", std::string("robot_agent ") + version() + " (" + commit() + ")");
+  app.set_config("--config", "", "mission.toml: any of these flags");
+  app.allow_config_extras(true);
+  app.add_option("--robot", f.robot, "R00, R01, ...")->capture_default_str();
+  app.add_option("--source", f.source, "reef:sparse, reef:varied, reef:tuning, or a world folder")
+      ->required();
+  app.add_option("--robots", f.survey.num_robots, "robots that share the area; robot k flies share k")
+      ->check(CLI::Range(1, 10000))
+      ->capture_default_str();
+  app.add_option("--observations", f.survey.observations, "images to take, 0 = as many as cover the share")
+      ->check(CLI::Range(0, 10'000'000))
+      ->capture_default_str();
+  app.add_option("--seed", f.agent.explorer.seed, "mission seed")->capture_default_str();
+  app.add_option("--lcm-url", f.url, "multicast group of the link")
+      ->envname("SHOAL_LCM_URL")
+      ->capture_default_str();
+  app.add_option("--budget", f.agent.budget, "bytes per second of mission time on the link, 0 = unlimited")
+      ->check(CLI::Range(int64_t{0}, int64_t{1} << 31))
+      ->capture_default_str();
+  app.add_option("--profile", f.agent.explorer.profile, "words and hyper-parameters: paper")
+      ->capture_default_str();
+  app.add_option("--mission", f.mission, "number or name that all processes of a mission share")
+      ->capture_default_str();
+  app.add_option("--rate", f.rate, "mission seconds per wall second: 1, 10, or max")->capture_default_str();
+  app.add_option("--cell-size-m", f.survey.cell_size_m, "edge of a cell, m (default: the world's)")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--altitude-m", f.survey.altitude_m, "camera height, m (default: native resolution)")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--frame-period-s", f.survey.frame_period_s, "mission seconds between images")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--out", f.agent.out_dir, "folder for robots/RNN/{map.csv,topics.json,poses.txt}");
+  app.add_flag("--fuse", f.agent.fuse, "hold everybody's beliefs and fuse them on board too");
+  auto* matcher = app.add_option("--matcher", f.agent.matcher.matcher, "for --fuse: id, hungarian or clear");
+  auto* similarity =
+      app.add_option("--similarity", f.agent.matcher.similarity, "for --fuse: cosine, overlap, l1, l2");
+  app.add_option("--sigma", f.sigma, "for --fuse: least similarity of a match, in (0, 1]")
+      ->capture_default_str();
+  app.add_flag("--linger", f.agent.linger, "stay after landing until told to stop");
+  app.add_flag("--single", f.single, "fly everybody's shares alone, off the link, into --out itself");
+  app.add_option("--checkpoint", f.checkpoint, "not built yet");
+  app.add_option("--log-level", f.log_level, "trace, debug, info, warn, error or off")->capture_default_str();
+  matcher->capture_default_str();
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  try {
+    fusion_node::setUpLog(f.single ? "single" : f.robot, f.log_level);
+    fusion_node::catchStopSignals();
+    if (similarity->count() == 0)
+      f.agent.matcher.similarity = fusion_node::usualSimilarity(f.agent.matcher.matcher);
+    return run(std::move(f));
+  } catch (const std::invalid_argument& error) {
+    std::fprintf(stderr, "robot_agent: %s\n", error.what());
+    return 2;
+  } catch (const std::exception& error) {
+    spdlog::error("{}", error.what());
+    return 1;
+  }
+}
