@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "shoal/comms/packet.h"
 #include "shoal/demand.h"
 
 namespace shoal::comms {
@@ -75,6 +76,21 @@ void Budget::measure(int64_t at_us) {
   const bool unlimited = bytes_per_s_ == 0;
   const bool alone = second_.size() == 1;
   worst_ = {bytes, alone && !unlimited ? std::max(bytes_per_s_, bytes) : bytes_per_s_};
+}
+
+size_t efficientDatagram(int64_t bytes_per_s, size_t overhead) {
+  SHOAL_DEMAND(bytes_per_s >= 0 && overhead < 1000);
+  if (bytes_per_s == 0) return kMaxWireBytes;
+  size_t best = kMaxWireBytes;
+  double most = 0;
+  for (size_t size = kMaxWireBytes; size > overhead; --size) {
+    const auto fit = static_cast<double>(std::max<int64_t>(1, bytes_per_s / static_cast<int64_t>(size)));
+    const double carried = (1 - static_cast<double>(overhead) / static_cast<double>(size)) * fit / (fit + 1);
+    if (carried <= most) continue;
+    most = carried;
+    best = size;
+  }
+  return best;
 }
 
 }  // namespace shoal::comms

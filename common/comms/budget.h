@@ -23,6 +23,10 @@ struct WorstWindow {
 /// and of all such i only the largest t_i B - P_i matters. All arithmetic is exact, in microseconds x
 /// bytes/s.
 ///
+/// What such a budget can carry: k = max(1, floor(B / s)) equal datagrams of s bytes fit a second, and k + 1
+/// need (k + 1) s / B seconds, both ends included. That is k / (k + 1) of B: only half when a datagram takes
+/// more than half a second's worth. See efficientDatagram().
+///
 /// Mission time does not run backwards: an earlier time than the last datagram's counts as that time.
 /// Cost: O(1) amortised in spend(), O(datagrams in the oldest s bytes of the last B bytes) in earliest().
 class Budget {
@@ -64,5 +68,9 @@ class Budget {
   std::deque<Sent> second_;  // datagrams of the last second
   WorstWindow worst_;
 };
+
+/// The wire size, up to kMaxWireBytes, of datagrams that carry most under a budget when each costs `overhead`
+/// < 1000 bytes that are no content: the largest (s - overhead) / s x k / (k + 1), see Budget.
+size_t efficientDatagram(int64_t bytes_per_s, size_t overhead);
 
 }  // namespace shoal::comms

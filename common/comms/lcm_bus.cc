@@ -3,6 +3,8 @@
 
 #include <poll.h>
 
+#include <algorithm>
+#include <chrono>
 #include <deque>
 #include <lcm/lcm-cpp.hpp>
 #include <stdexcept>
@@ -13,6 +15,16 @@
 #include "shoal/demand.h"
 
 namespace shoal::comms {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+int millisecondsUntil(Clock::time_point deadline) {
+  const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now()).count();
+  return static_cast<int>(std::max<decltype(left)>(left, 0));
+}
+
+}  // namespace
 
 struct LcmBus::Impl {
   explicit Impl(const std::string& url_in, size_t max) : url(url_in), max_queue(max), transport(url_in) {}
@@ -76,12 +88,15 @@ void LcmBus::publish(const Packet& packet) {
 
 int LcmBus::receive(int timeout_ms, const std::function<void(const Packet&)>& handler) {
   std::deque<Packet>& queue = impl_->queue;
-  pollfd readable{impl_->fd, POLLIN, 0};
-  if (poll(&readable, 1, queue.empty() ? timeout_ms : 0) > 0) {
+  const auto deadline = Clock::now() + std::chrono::milliseconds(timeout_ms);
+  while (true) {
+    pollfd readable{impl_->fd, POLLIN, 0};
+    if (poll(&readable, 1, queue.empty() ? millisecondsUntil(deadline) : 0) <= 0) break;
     // Bounded, so that a flood faster than this loop cannot hold it.
     const size_t most = 2 * impl_->max_queue;
     for (size_t i = 0; i < most && impl_->transport.handleTimeout(0) > 0; ++i) {
     }
+    if (!queue.empty() || Clock::now() >= deadline) break;  // else all of it was refused
   }
   int delivered = 0;
   while (!queue.empty()) {

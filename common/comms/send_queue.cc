@@ -125,6 +125,9 @@ const SendQueue::Class* SendQueue::choose() const {
 void SendQueue::await(Entries::iterator it) {
   Entry& entry = it->second;
   Class& joined = of(entry.traffic);
+  if (choose() == nullptr) {  // nobody is owed anything: utility decides afresh
+    for (const Class& each : classes_) pass_ = std::max(pass_, each.pass);
+  }
   if (joined.waiting.empty()) joined.pass = std::max(joined.pass, pass_);
   entry.waiting = true;
   entry.place = next_place_++;

@@ -95,7 +95,7 @@ class SendQueue {
 
   int64_t min_resend_interval_us_;
   std::array<Class, kNumTrafficClasses> classes_;
-  int64_t pass_ = 0;  // of the class served last
+  int64_t pass_ = 0;  // of the class served last; where a class that was idle joins
   uint64_t next_place_ = 0;
   Entries entries_;
   Line rotation_;  // in order of sending

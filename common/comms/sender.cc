@@ -22,23 +22,26 @@ Sender::Sender(Bus& link, Bus* local, SenderOptions options)
 
 int64_t Sender::pump(int64_t now_us) {
   while (true) {
-    if (heartbeat_.dueAt() <= now_us) {
+    const auto next = queue_.next(now_us);
+    const bool content_first = heartbeat_went_last_ && next.has_value();
+    if (heartbeat_.dueAt() <= now_us && !content_first) {
       const Packet packet = options_.make_heartbeat(now_us);
       if (const int64_t at_us = earliest(now_us, packet); at_us > now_us) return at_us;
       send(packet, TrafficClass::kHeartbeat, false, now_us);
       heartbeat_.sent(now_us, wireSize(packet));
+      heartbeat_went_last_ = true;
       continue;
     }
-    const auto next = queue_.next(now_us);
     if (!next) return std::min(heartbeat_.dueAt(), queue_.nextResend().value_or(kNever));
     if (const int64_t at_us = earliest(now_us, *next->packet); at_us > now_us) {
-      return std::min(at_us, heartbeat_.dueAt());
+      return content_first ? at_us : std::min(at_us, heartbeat_.dueAt());
     }
     Packet packet = *next->packet;
     if (options_.stamp) options_.stamp(packet, now_us);
     SHOAL_DEMAND(wireSize(packet) == wireSize(*next->packet));
     send(packet, next->traffic, next->resent, now_us);
     queue_.markSent(now_us);
+    heartbeat_went_last_ = false;
   }
 }
 

@@ -22,24 +22,25 @@ struct SenderOptions {
   /// Bytes on the wire per second of mission time, 0 = unlimited.
   int64_t bytes_per_s = 0;
 
-  SendQueueOptions queue;
-  WallPacerOptions pacing;
+  SendQueueOptions queue = {};
+  WallPacerOptions pacing = {};
   WallTime wall = realWallTime();
 
   /// Makes a heartbeat at the moment of sending. Called again, at a later time, when the budget made it wait.
   /// None when empty.
-  std::function<Packet(int64_t now_us)> make_heartbeat;
+  std::function<Packet(int64_t now_us)> make_heartbeat = {};
 
   /// Writes the time of sending into a copy of an offered packet, which must keep its size. None when empty.
-  std::function<void(Packet& packet, int64_t now_us)> stamp;
+  std::function<void(Packet& packet, int64_t now_us)> stamp = {};
 
   /// The process came back after a crash and may have used its whole budget up to this mission time.
-  std::optional<int64_t> resumed_at_us;
+  std::optional<int64_t> resumed_at_us = {};
 };
 
 /// The single choke point: everything a node sends passes here, is counted, and on the link kept in budget.
-/// Order: a heartbeat when due, then SendQueue's. Who is first waits for the budget; nothing smaller
-/// overtakes.
+/// Order: a heartbeat when due, then SendQueue's. Who is first waits for the budget and nothing smaller
+/// overtakes. While content waits, no heartbeat follows another: on a thin link, a large datagram would never
+/// find room between them.
 class Sender {
  public:
   static constexpr int64_t kNever = std::numeric_limits<int64_t>::max();
@@ -78,6 +79,7 @@ class Sender {
   Budget budget_;
   SendQueue queue_;
   HeartbeatPacer heartbeat_;
+  bool heartbeat_went_last_ = false;
   WallPacer pacer_;
   Stats stats_;
 };
