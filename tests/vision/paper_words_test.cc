@@ -210,7 +210,8 @@ TEST(MakeWordExtractorTest, TakesAVocabularyOfTheCallers) {
   const auto bytes = Vocabulary({{1, 2, 3, 4}, {5, 6, 7, 8}}).serialize();
   const auto extractor = makeWordExtractor("paper", bytes);
   EXPECT_EQ(extractor->vocabularySize(), 3 * 2 + 180 + 256);
-  EXPECT_NE(extractor->fingerprint(), makeWordExtractor("paper")->fingerprint());
+  const auto other_words = Vocabulary({{1, 2, 3, 4}, {5, 6, 7, 9}}).serialize();
+  EXPECT_NE(extractor->fingerprint(), makeWordExtractor("paper", other_words)->fingerprint());
   EXPECT_THROW(makeWordExtractor("paper", std::span(bytes).first(40)), std::invalid_argument);
 }
 
