@@ -84,7 +84,7 @@ std::span<const int32_t> Gibbs::wordCounts(int32_t word) const {
 double Gibbs::openness(int32_t slot) const {
   if (slots_.isOpen(slot)) return 1.0;
   if (!slots_.canOpen()) return 0.0;
-  if (hyperparameters_.gamma == 0.0 || slots_.numOpen() == 0) return 1.0;
+  if (hyperparameters_.gamma == 0.0) return 1.0;
   return slot == slots_.firstClosed() ? hyperparameters_.gamma : 0.0;
 }
 

@@ -21,7 +21,8 @@ namespace shoal::topics {
 /// all counts without the word itself: only its own topic's are decremented. g_k is 1 for a topic that has
 /// words, γ for one unused slot, 0 for the other unused ones; with γ = 0 it is 1 for all K, and K is fixed.
 /// A word that is the last of its topic counts its own slot as the unused one, so it may stay and keep the
-/// topic's id. The very first word opens the first slot. Once the ids have run out nothing new opens.
+/// topic's id. The very first word has no other
+/// choice than the first slot, however small γ. Once the ids have run out nothing new opens.
 ///
 /// Numbers: double throughout, one fixed order of summation, no library functions, so any build that obeys
 /// IEEE 754 (no fast-math, no contraction) gives the same bytes. A new topic may have a probability of

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <numeric>
 #include <span>
 #include <stdexcept>
 #include <utility>
@@ -107,8 +108,7 @@ TEST(GibbsTest, VisitsLabelingsAsOftenAsTheExactPosteriorSays) {
     }
     posterior.push_back(std::exp(log_p));
   }
-  double total = 0;
-  for (const double p : posterior) total += p;
+  const double total = std::accumulate(posterior.begin(), posterior.end(), 0.0);
 
   TinyWorld world(h, vocabulary_size, words);
   world.assign(0, 0);
@@ -128,59 +128,70 @@ TEST(GibbsTest, VisitsLabelingsAsOftenAsTheExactPosteriorSays) {
   }
 }
 
-// One word is drawn again and again while all the others stand still; the shares are worked out here from
-// the formula of the header, neighbours and new topic included.
+// The shares of word i of cell 1, worked out here from the formula of the header, neighbours and new topic
+// included.
+std::vector<double> sharesByHand(const TinyWorld& world, const Hyperparameters& h, size_t i) {
+  const Token token = world.cells[1][i];
+  const auto countWithout = [&](int32_t k) { return world.gibbs.topicCount(k) - (k == token.slot ? 1 : 0); };
+  // The one unused slot that may open: the word's own if it is alone there, else the first.
+  int32_t option = 0;
+  while (option < h.max_topics && countWithout(option) > 0) ++option;
+  if (countWithout(token.slot) == 0) option = token.slot;
+
+  std::vector<double> share;
+  for (int32_t k = 0; k < h.max_topics; ++k) {
+    const auto at = static_cast<size_t>(k);
+    const int32_t own = k == token.slot ? 1 : 0;
+    const double n_kw = world.gibbs.wordCounts(token.word)[at] - own;
+    const auto n_k = static_cast<double>(countWithout(k));
+    const double n_ck =
+        world.counts[1][at] - own + h.neighbor_weight * (world.counts[0][at] + world.counts[2][at]);
+    const double unused = h.gamma == 0.0 ? 1.0 : k == option ? h.gamma : 0.0;
+    const double g = n_k > 0.0 ? 1.0 : unused;
+    share.push_back(g * (n_kw + h.beta) / (n_k + world.gibbs.vocabularySize() * h.beta) * (n_ck + h.alpha));
+  }
+  const double total = std::accumulate(share.begin(), share.end(), 0.0);
+  for (double& p : share) p /= total;
+  return share;
+}
+
+// From many states of a chain, one word is drawn again and again while all the others stand still.
 class ConditionalTest : public testing::TestWithParam<double> {};
 
 TEST_P(ConditionalTest, DrawsEachTopicAsOftenAsTheFormulaSays) {
-  const int32_t num_topics = 5, vocabulary_size = 4;
-  const Hyperparameters h{
-      .max_topics = num_topics, .alpha = 0.7, .beta = 0.9, .gamma = GetParam(), .neighbor_weight = 0.5};
-  TinyWorld world(h, vocabulary_size, {{0, 1, 2, 2, 3, 0, 0}, {2, 3, 2, 1, 1}, {1, 1, 0, 2}});
+  const Hyperparameters h{.max_topics = 7, .alpha = 0.7, .beta = 0.9, .gamma = GetParam()};
+  TinyWorld world(h, 4, {{0, 1, 2, 2}, {2, 3, 0}, {1, 1}});
   for (size_t c = 0; c < 3; ++c) world.assign(c, 5);
-  for (uint64_t sweep = 0; sweep < 20; ++sweep) {
-    for (size_t c = 0; c < 3; ++c) world.resample(c, sweep);
-  }
-
-  for (size_t i = 0; i < world.cells[1].size(); ++i) {
-    const TinyWorld before = world;
-    const Token token = before.cells[1][i];
-    std::vector<double> share(num_topics);
-    int32_t option = -1;  // the unused slot that may open: the word's own if it is alone there
-    if (before.gibbs.topicCount(token.slot) == 1) option = token.slot;
-    for (int32_t k = num_topics - 1; k >= 0 && option != token.slot; --k) {
-      if (before.gibbs.topicCount(k) == 0) option = k;
-    }
-    double total = 0;
-    for (int32_t k = 0; k < num_topics; ++k) {
-      const auto at = static_cast<size_t>(k);
-      const double own = k == token.slot ? 1.0 : 0.0;
-      const double n_kw = before.gibbs.wordCounts(token.word)[at] - own;
-      const double n_k = static_cast<double>(before.gibbs.topicCount(k)) - own;
-      const double n_ck = before.counts[1][at] - own + 0.5 * (before.counts[0][at] + before.counts[2][at]);
-      double g = 1.0;
-      if (n_k == 0.0 && h.gamma > 0.0) g = k == option ? h.gamma : 0.0;
-      share[at] = g * (n_kw + h.beta) / (n_k + vocabulary_size * h.beta) * (n_ck + h.alpha);
-      total += share[at];
-    }
-    std::vector<double> drawn(num_topics);
-    const int num_draws = 40'000;
-    for (int draw = 0; draw < num_draws; ++draw) {
-      TinyWorld after = before;
-      after.resampleOne(1, i, static_cast<uint64_t>(draw));
-      ++drawn[static_cast<size_t>(after.cells[1][i].slot)];
-    }
-    for (size_t k = 0; k < num_topics; ++k) {
-      const double p = share[k] / total;
-      if (p == 0.0) {
-        EXPECT_EQ(drawn[k], 0.0);
+  int num_lone_words = 0, num_gaps = 0;  // the corners of the rule: were they tried?
+  for (uint64_t state = 0; state < 40; ++state) {
+    for (size_t c = 0; c < 3; ++c) world.resample(c, state);
+    for (size_t i = 0; i < world.cells[1].size(); ++i) {
+      const std::vector<double> share = sharesByHand(world, h, i);
+      const bool alone = world.gibbs.topicCount(world.cells[1][i].slot) == 1;
+      num_lone_words += alone && world.gibbs.slots().firstClosed() < world.cells[1][i].slot;
+      num_gaps += world.gibbs.slots().end() - world.gibbs.slots().numOpen() > 1;
+      std::vector<double> drawn(share.size());
+      const int num_draws = 5000;
+      for (int draw = 0; draw < num_draws; ++draw) {
+        TinyWorld after = world;
+        after.resampleOne(1, i, static_cast<uint64_t>(draw));
+        ++drawn[static_cast<size_t>(after.cells[1][i].slot)];
       }
-      EXPECT_NEAR(drawn[k] / num_draws, p, 5.0 * std::sqrt(p * (1.0 - p) / num_draws)) << "word " << i;
+      for (size_t k = 0; k < share.size(); ++k) {
+        const double p = share[k];
+        if (p == 0.0) {
+          EXPECT_EQ(drawn[k], 0.0);
+        }
+        EXPECT_NEAR(drawn[k], num_draws * p, 5.0 * std::sqrt(num_draws * p * (1.0 - p)) + 2.0)
+            << "word " << i;
+      }
     }
   }
+  EXPECT_GT(num_lone_words, 0);
+  EXPECT_GT(num_gaps, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(FixedAndGrowing, ConditionalTest, testing::Values(0.0, 0.4));
+INSTANTIATE_TEST_SUITE_P(FixedAndGrowing, ConditionalTest, testing::Values(0.0, 0.4, 2.0));
 
 // A large new-topic weight keeps topics coming and going.
 TEST(GibbsTest, CountsMatchTheTokensAfterEveryMove) {
