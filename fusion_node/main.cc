@@ -57,6 +57,9 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--rate", rate, "mission seconds per wall second: 1, 10, or max = as the robots")
       ->capture_default_str();
+  app.add_option("--cell-size-m", options.cell_size_m, "edge of a cell, m, until a robot has said")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   app.add_option("--state", options.state_dir, "folder in which the node answers `operator_console --node`");
   app.add_option("--out", options.out_dir, "folder for global_map.csv and labels.csv at the end");
   app.add_option("--log-level", log_level, "trace, debug, info, warn, error or off")->capture_default_str();

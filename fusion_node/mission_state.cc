@@ -30,8 +30,8 @@ std::string_view phaseName(wire::Phase phase) {
 
 }  // namespace
 
-MissionState::MissionState(int32_t mission, const matching::MatcherOptions& matcher)
-    : mission_(mission), matcher_(matcher) {
+MissionState::MissionState(int32_t mission, const matching::MatcherOptions& matcher, double cell_size_m)
+    : mission_(mission), matcher_(matcher), cell_size_m_(cell_size_m) {
   matching::match(matching::DescriptorSet{}, matcher_);  // wrong options are the caller's mistake: say so now
 }
 
@@ -108,11 +108,16 @@ bool MissionState::holdsWhole(const std::string& robot) const {
 double MissionState::cellSize() const {
   for (const auto& [name, heartbeat] : heartbeats_)
     if (heartbeat.phase != wire::Phase::kNode) return heartbeat.cell_size_m;
-  return 1.0;
+  return cell_size_m_;
 }
 
 mapping::MissionView MissionState::view() const {
-  mapping::MissionView view{.mission = mission_, .cell_size_m = cellSize(), .map = map_, .nodes = {}};
+  mapping::MissionView view{.mission = mission_,
+                            .cell_size_m = cellSize(),
+                            .map = map_,
+                            .state_digest = beliefs_.digest(),
+                            .map_digest = map_digest_,
+                            .nodes = {}};
   for (const auto& [name, h] : heartbeats_) {
     view.nodes.push_back({.name = name,
                           .phase = std::string(phaseName(h.phase)),

@@ -24,7 +24,7 @@ class MissionState {
  public:
   /// @param mission  Only messages of this mission enter.
   /// @throws std::invalid_argument when the matcher options are wrong.
-  MissionState(int32_t mission, const matching::MatcherOptions& matcher);
+  MissionState(int32_t mission, const matching::MatcherOptions& matcher, double cell_size_m = 1.0);
 
   /// Takes a message in. Refusals are counted in `stats`.
   void hear(const comms::Packet& packet, comms::Stats& stats);
@@ -53,7 +53,7 @@ class MissionState {
   /// True when all is held that this robot says it has.
   bool holdsWhole(const std::string& robot) const;
 
-  /// Edge of a cell as the lowest robot says, metres; 1 before any was heard.
+  /// Edge of a cell as the lowest robot says, metres; the constructor's before any was heard.
   double cellSize() const;
 
   /// Everything as one value to ask questions of, with the map as of the last refreshMap().
@@ -62,6 +62,7 @@ class MissionState {
  private:
   int32_t mission_;
   matching::MatcherOptions matcher_;
+  double cell_size_m_;
   mapping::BeliefStore beliefs_;
   std::map<std::string, wire::Heartbeat> heartbeats_;
   std::set<int32_t> other_missions_;

@@ -37,7 +37,7 @@ comms::SenderOptions senderOptions(int64_t budget, std::function<comms::Packet(i
 
 Node::Node(const NodeOptions& options, comms::Bus& link, comms::Bus& local)
     : options_(options),
-      state_(options.mission, options.matcher),
+      state_(options.mission, options.matcher, options.cell_size_m),
       link_(link),
       local_(local),
       clock_(options.rate),

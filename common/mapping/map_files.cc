@@ -61,18 +61,19 @@ std::string labelsCsv(const GlobalMap& map, const world::Grid& grid) {
   return csv;
 }
 
-GlobalMap readGlobalMap(const std::string& folder, const world::Grid& grid) {
+GlobalMap parseGlobalMap(const std::string& cells_csv, const std::string& labels_csv, const world::Grid& grid,
+                         const std::string& origin) {
   GlobalMap map;
-  const std::string cells = folder + "/global_map.csv";
-  for (const auto& row : parseCsv(readFile(cells), kMapColumns, cells)) {
+  const std::string cells = origin + "/global_map.csv";
+  for (const auto& row : parseCsv(cells_csv, kMapColumns, cells)) {
     map.cells.push_back({grid.cellOf({toReal(row[0], cells), toReal(row[1], cells), toReal(row[2], cells)}),
                          world::GlobalLabel{static_cast<int32_t>(toInteger(row[3], cells))},
                          toRobot(row[4], cells), fromSeconds(toReal(row[5], cells)),
                          static_cast<float>(toReal(row[6], cells))});
   }
   std::ranges::sort(map.cells, {}, &GlobalCell::cell);
-  const std::string labels = folder + "/labels.csv";
-  for (const auto& row : parseCsv(readFile(labels), kLabelColumns, labels)) {
+  const std::string labels = origin + "/labels.csv";
+  for (const auto& row : parseCsv(labels_csv, kLabelColumns, labels)) {
     LabelSummary summary{.label = world::GlobalLabel{static_cast<int32_t>(toInteger(row[0], labels))},
                          .name = row[1],
                          .cells = toInteger(row[2], labels),
@@ -84,6 +85,10 @@ GlobalMap readGlobalMap(const std::string& folder, const world::Grid& grid) {
     map.labels.push_back(std::move(summary));
   }
   return map;
+}
+
+GlobalMap readGlobalMap(const std::string& folder, const world::Grid& grid) {
+  return parseGlobalMap(readFile(folder + "/global_map.csv"), readFile(folder + "/labels.csv"), grid, folder);
 }
 
 }  // namespace shoal::mapping

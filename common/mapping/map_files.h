@@ -18,6 +18,10 @@ std::string globalMapCsv(const GlobalMap& map, const world::Grid& grid);
 /// The legend as CSV: label,name,cells,area_m2,robots,first_seen_s; ascending by label.
 std::string labelsCsv(const GlobalMap& map, const world::Grid& grid);
 
+/// Reads both texts back, as readGlobalMap() does; `origin` is named in errors.
+GlobalMap parseGlobalMap(const std::string& cells_csv, const std::string& labels_csv, const world::Grid& grid,
+                         const std::string& origin);
+
 /// Reads both back (cells and labels; correspondences and digests are not in the files). Times come back to
 /// the millisecond. @throws std::runtime_error naming the file and what is wrong.
 GlobalMap readGlobalMap(const std::string& folder, const world::Grid& grid);

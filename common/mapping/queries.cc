@@ -13,39 +13,62 @@ using Json = nlohmann::ordered_json;
 
 double rounded(double value, double per_unit) { return std::round(value * per_unit) / per_unit; }
 
-std::string hex(uint64_t digest) {
+}  // namespace
+
+std::string digestText(uint64_t digest) {
   char text[17];
   std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(digest));
   return text;
 }
 
-}  // namespace
+Json toJson(const NodeStatus& n) {
+  return {{"name", n.name},
+          {"phase", n.phase},
+          {"heard_s", rounded(n.heard_s, 1e3)},
+          {"observation", n.observation},
+          {"num_observations", n.num_observations},
+          {"topics", n.topics},
+          {"cells", n.cells},
+          {"bytes_sent", n.bytes_sent},
+          {"budget", n.budget},
+          {"queue_bytes", n.queue_bytes},
+          {"ms_per_frame", rounded(n.ms_per_frame, 1e2)},
+          {"position_m", {rounded(n.x_m, 1e3), rounded(n.y_m, 1e3), rounded(n.z_m, 1e3)}},
+          {"rejected", n.rejected},
+          {"conflicts", n.conflicts},
+          {"heard_whole", n.heard_whole}};
+}
+
+NodeStatus nodeFromJson(const Json& json) {
+  NodeStatus n;
+  json.at("name").get_to(n.name);
+  json.at("phase").get_to(n.phase);
+  json.at("heard_s").get_to(n.heard_s);
+  json.at("observation").get_to(n.observation);
+  json.at("num_observations").get_to(n.num_observations);
+  json.at("topics").get_to(n.topics);
+  json.at("cells").get_to(n.cells);
+  json.at("bytes_sent").get_to(n.bytes_sent);
+  json.at("budget").get_to(n.budget);
+  json.at("queue_bytes").get_to(n.queue_bytes);
+  json.at("ms_per_frame").get_to(n.ms_per_frame);
+  json.at("position_m").at(0).get_to(n.x_m);
+  json.at("position_m").at(1).get_to(n.y_m);
+  json.at("position_m").at(2).get_to(n.z_m);
+  json.at("rejected").get_to(n.rejected);
+  json.at("conflicts").get_to(n.conflicts);
+  json.at("heard_whole").get_to(n.heard_whole);
+  return n;
+}
 
 Json statusAnswer(const MissionView& view) {
   Json answer{{"mission_id", view.mission},
               {"cell_size_m", view.cell_size_m},
               {"cells", view.map.cells.size()},
               {"labels", view.map.labels.size()},
-              {"digest", {{"state", hex(view.map.state_digest)}, {"map", hex(view.map.digest())}}},
+              {"digest", {{"state", digestText(view.state_digest)}, {"map", digestText(view.map_digest)}}},
               {"nodes", Json::array()}};
-  for (const NodeStatus& n : view.nodes) {
-    answer["nodes"].push_back(
-        {{"name", n.name},
-         {"phase", n.phase},
-         {"heard_s", rounded(n.heard_s, 1e3)},
-         {"observation", n.observation},
-         {"num_observations", n.num_observations},
-         {"topics", n.topics},
-         {"cells", n.cells},
-         {"bytes_sent", n.bytes_sent},
-         {"budget", n.budget},
-         {"queue_bytes", n.queue_bytes},
-         {"ms_per_frame", rounded(n.ms_per_frame, 1e2)},
-         {"position_m", {rounded(n.x_m, 1e3), rounded(n.y_m, 1e3), rounded(n.z_m, 1e3)}},
-         {"rejected", n.rejected},
-         {"conflicts", n.conflicts},
-         {"heard_whole", n.heard_whole}});
-  }
+  for (const NodeStatus& n : view.nodes) answer["nodes"].push_back(toJson(n));
   return answer;
 }
 

@@ -35,12 +35,18 @@ struct MissionView {
   int64_t mission = 0;
   double cell_size_m = 1.0;
   GlobalMap map;
+  uint64_t state_digest = 0, map_digest = 0;
   std::vector<NodeStatus> nodes;  ///< robots first, by number, then the others by name
 };
 
 /// Answers as JSON objects; docs/operators.md shows one of each.
 nlohmann::ordered_json statusAnswer(const MissionView& view);
 nlohmann::ordered_json labelsAnswer(const MissionView& view);
+/// A node as it stands in statusAnswer(), and back. @throws nlohmann::json::exception for a missing key.
+nlohmann::ordered_json toJson(const NodeStatus& node);
+NodeStatus nodeFromJson(const nlohmann::ordered_json& json);
+/// Sixteen hexadecimal digits, as digests are shown everywhere.
+std::string digestText(uint64_t digest);
 /// Every cell of the column at (x, y), metres, world, from low to high. No cells: an empty list.
 nlohmann::ordered_json atAnswer(const MissionView& view, double x_m, double y_m);
 

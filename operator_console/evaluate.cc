@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "operator_console/evaluate.h"
+
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include <spdlog/fmt/fmt.h>
+#include <CLI/CLI.hpp>
+
+#include "fusion_node/process.h"
+#include "shoal/mapping/atomic_file.h"
+#include "shoal/world/world.h"
+
+namespace shoal::console {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double rounded(double value) { return std::round(value * 1e6) / 1e6; }
+
+struct Flags {
+  std::string run, world, matcher = "all", similarity, sigma = "0.75";
+  bool json = false;
+};
+
+void evaluate(const Flags& flags) {
+  const Json summary = [&] {
+    try {
+      return Json::parse(mapping::readFile(flags.run + "/summary.json"));
+    } catch (const Json::exception& error) {
+      throw std::runtime_error(flags.run + "/summary.json: " + error.what());
+    }
+  }();
+  const auto world = world::openWorld(flags.world, summary.at("seed").get<uint64_t>());
+  std::vector<matching::MatcherOptions> matchers = eval::allMatchers();
+  if (flags.matcher != "all") {
+    matchers = {{.matcher = flags.matcher, .similarity = fusion_node::usualSimilarity(flags.matcher)}};
+    matching::match(matching::DescriptorSet{}, matchers[0]);  // an unknown matcher is refused here, by name
+  }
+  for (matching::MatcherOptions& options : matchers) {
+    options.sigma = fusion_node::parseSigma(flags.sigma);
+    if (!flags.similarity.empty()) options.similarity = flags.similarity;
+  }
+  const Evaluation result = evaluateRun(flags.run, *world, summary.at("cell_size_m"), matchers);
+  if (flags.json) {
+    std::cout << result.json().dump(2) << '\n';
+  } else {
+    std::cout << scoreTable(result);
+  }
+}
+
+}  // namespace
+
+Json Evaluation::json() const {
+  const eval::Score& first = scores.at(0);
+  Json result{{"cells", first.cells},       {"scored", first.scored},   {"coverage", rounded(coverage)},
+              {"cell_size_m", cell_size_m}, {"classes", first.classes}, {"matchers", Json::object()}};
+  for (size_t i = 0; i < scores.size(); ++i) {
+    result["matchers"][matchers[i].matcher] = {{"ami", rounded(scores[i].ami)},
+                                               {"nmi", rounded(scores[i].nmi)},
+                                               {"labels", scores[i].labels},
+                                               {"sigma", matchers[i].sigma},
+                                               {"similarity", matchers[i].similarity}};
+  }
+  if (single)
+    result["single"] = {
+        {"ami", rounded(single->ami)}, {"nmi", rounded(single->nmi)}, {"labels", single->labels}};
+  return result;
+}
+
+Evaluation evaluateRun(const std::string& dir, const world::World& world, double cell_size_m,
+                       const std::vector<matching::MatcherOptions>& matchers) {
+  const world::Grid grid(cell_size_m);
+  const eval::Run run = eval::readRun(dir, grid);
+  Evaluation result;
+  result.cell_size_m = cell_size_m;
+  result.matchers = matchers;
+  result.truth = {world.classes(), eval::truthFor(world, grid, run, world::Intrinsics{})};
+  result.scores = eval::scoreMatchers(run, matchers, result.truth.of_cell);
+  if (run.single) result.single = eval::scoreSingle(*run.single, result.truth.of_cell);
+  std::vector<world::CellIndex> cells;
+  for (const mapping::LocalBelief& belief : run.robots)
+    for (const mapping::BelievedCell& c : belief.cells) cells.push_back(c.cell);
+  result.coverage = eval::coverageOf(cells, world, grid);
+  return result;
+}
+
+std::string scoreTable(const Evaluation& e) {
+  std::string table = fmt::format("{:<34} {:>7} {:>7} {:>7}\n", "", "AMI", "NMI", "labels");
+  const auto row = [&table](const std::string& what, const eval::Score& s) {
+    table += fmt::format("{:<34} {:>7.3f} {:>7.3f} {:>7}\n", what, s.ami, s.nmi, s.labels);
+  };
+  for (size_t i = 0; i < e.scores.size(); ++i) {
+    const matching::MatcherOptions& m = e.matchers[i];
+    std::string what = m.matcher;
+    if (m.matcher == "id") what = "ID (topic j is topic j)";
+    if (m.matcher == "hungarian") what = "sequential Hungarian, " + m.similarity;
+    if (m.matcher == "clear") what = fmt::format("CLEAR, {} {:.2f}", m.similarity, m.sigma);
+    row(what, e.scores[i]);
+  }
+  if (e.single) row("one robot that saw the same area", *e.single);
+  const eval::Score& s = e.scores.at(0);
+  return table + fmt::format("{} of {} cells have a truth, {} classes, coverage {:.1f} %\n", s.scored,
+                             s.cells, s.classes, e.coverage * 100);
+}
+
+void addEvaluateCommand(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("evaluate", "score a finished mission against its world");
+  const auto flags = std::make_shared<Flags>();
+  command->add_option("--run", flags->run, "folder of the mission")->required();
+  command->add_option("--world", flags->world, "the world it was flown over")->required();
+  command->add_option("--matcher", flags->matcher, "all, id, hungarian or clear")->capture_default_str();
+  command->add_option("--similarity", flags->similarity,
+                      "cosine, overlap, l1 or l2 (default: the matcher's usual)");
+  command->add_option("--sigma", flags->sigma, "least similarity of a match, in (0, 1]")
+      ->capture_default_str();
+  command->add_flag("--json", flags->json, "answer in JSON");
+  command->callback([flags] { evaluate(*flags); });
+}
+
+}  // namespace shoal::console
