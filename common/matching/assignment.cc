@@ -18,7 +18,9 @@ std::vector<int> assign(const Eigen::MatrixXd& cost) {
   if (!cost.allFinite()) throw std::invalid_argument("every cost of an assignment must be finite");
 
   constexpr Eigen::Index kNone = -1;
-  const auto at = [](auto& values, Eigen::Index i) -> decltype(auto) { return values[static_cast<size_t>(i)]; };
+  const auto at = [](auto& values, Eigen::Index i) -> decltype(auto) {
+    return values[static_cast<size_t>(i)];
+  };
   const auto columns = static_cast<size_t>(num_columns);
   // Duals: cost(i, j) - u_i - v_j >= 0, and 0 on the assignment.
   std::vector<double> u(static_cast<size_t>(num_rows), 0.0);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numeric>
+#include <stdexcept>
 #include <vector>
 
 #include "shoal/demand.h"
@@ -17,8 +18,11 @@ namespace shoal::matching {
 namespace {
 
 constexpr double kResidual = 1e-9;
+constexpr double kShift = 1.0;
 
-// B - V (Θ + 1) V': what has been found already, (Θ, V), moves to eigenvalue -1, the rest stays.
+// B + I - V (Θ + I) V': eigenvalues are 1 greater, but what has been found already, (Θ, V), moves to 0.
+// Without the shift a matrix of low rank leaves Spectra's tridiagonal solver nothing but round-off, on which
+// it does not end.
 class Deflated {
  public:
   using Scalar = double;
@@ -32,9 +36,10 @@ class Deflated {
     const Eigen::Map<const Eigen::VectorXd> x(x_in, rows());
     Eigen::Map<Eigen::VectorXd> y(y_out, rows());
     y.noalias() = matrix_.selfadjointView<Eigen::Lower>() * x;
+    y += kShift * x;
     if (found_.values.size() == 0) return;
     const Eigen::VectorXd along = found_.vectors.transpose() * x;
-    y.noalias() -= found_.vectors * (found_.values.array() + 1.0).matrix().cwiseProduct(along);
+    y.noalias() -= found_.vectors * (found_.values.array() + kShift).matrix().cwiseProduct(along);
   }
 
   void deflate(const Eigenpairs& more) {
@@ -71,7 +76,12 @@ class Lanczos : public Spectra::SymEigsSolver<Deflated> {
   }
 
   // By Cauchy's interlacing never more than there are eigenvalues.
-  int numRitzValuesAbove(double bound) const { return static_cast<int>((ritz_.array() > bound).count()); }
+  int numRitzValuesAbove(double bound) const {
+    return static_cast<int>((ritz_.array() - kShift > bound).count());
+  }
+
+  // The wanted pairs of B, after a successful run().
+  Eigenpairs pairs() const { return {eigenvalues().array() - kShift, eigenvectors()}; }
 
  private:
   void sort_ritzpair(Spectra::SortRule rule) override {
@@ -88,9 +98,9 @@ bool nothingAbove(Deflated& rest, double bound, uint64_t stream, bool& decided) 
     Lanczos top(rest, 1, 40, stream);
     decided = top.run(300, tolerance);
     if (!decided) return false;
-    const double value = top.eigenvalues()[0];
+    const double value = top.pairs().values[0];
     if (value > bound) return false;
-    if (value + tolerance * std::abs(value) <= bound) return true;
+    if (value + tolerance * (value + kShift) <= bound) return true;
   }
   return true;
 }
@@ -112,17 +122,8 @@ Eigenpairs descending(const Eigenpairs& pairs) {
   return {pairs.values(order), pairs.vectors(Eigen::all, order)};
 }
 
-}  // namespace
-
-Eigenpairs denseEigenpairsAbove(const Eigen::SparseMatrix<double>& matrix, double bound) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver{Eigen::MatrixXd(matrix)};
-  SHOAL_DEMAND(solver.info() == Eigen::Success);
-  const Eigen::Index count = (solver.eigenvalues().array() > bound).count();
-  return {solver.eigenvalues().tail(count).reverse(),
-          solver.eigenvectors().rightCols(count).rowwise().reverse()};
-}
-
-std::optional<Eigenpairs> krylovEigenpairsAbove(const Eigen::SparseMatrix<double>& matrix, double bound) {
+std::optional<Eigenpairs> deflateUntilNothingIsAbove(const Eigen::SparseMatrix<double>& matrix,
+                                                     double bound) {
   const int size = static_cast<int>(matrix.rows());
   Deflated rest(matrix);
   for (uint64_t round = 0; size >= 8; ++round) {
@@ -140,14 +141,32 @@ std::optional<Eigenpairs> krylovEigenpairsAbove(const Eigen::SparseMatrix<double
     Lanczos solver(rest, left, 2 * left + 40, 2 * round + 1);
     if (!solver.run(300, 1e-12)) return std::nullopt;
     // A start vector may have been unlucky, another may not: what is there and above counts.
-    const Eigenpairs pairs{solver.eigenvalues(), solver.eigenvectors()};
+    const Eigenpairs pairs = solver.pairs();
     const Eigen::Index above = (pairs.values.array() > bound).count();
     if (above == 0) return std::nullopt;
     rest.deflate({pairs.values.head(above), pairs.vectors.leftCols(above)});
   }
-  if (rest.found().values.size() == 0) return denseEigenpairsAbove(matrix, bound);
+  if (rest.found().values.size() == 0) return std::nullopt;
   if (!certified(matrix, rest.found(), bound)) return std::nullopt;
   return descending(rest.found());
+}
+
+}  // namespace
+
+Eigenpairs denseEigenpairsAbove(const Eigen::SparseMatrix<double>& matrix, double bound) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver{Eigen::MatrixXd(matrix)};
+  SHOAL_DEMAND(solver.info() == Eigen::Success);
+  const Eigen::Index count = (solver.eigenvalues().array() > bound).count();
+  return {solver.eigenvalues().tail(count).reverse(),
+          solver.eigenvectors().rightCols(count).rowwise().reverse()};
+}
+
+std::optional<Eigenpairs> krylovEigenpairsAbove(const Eigen::SparseMatrix<double>& matrix, double bound) {
+  try {
+    return deflateUntilNothingIsAbove(matrix, bound);
+  } catch (const std::runtime_error&) {  // Spectra: no convergence inside its subspace
+    return std::nullopt;
+  }
 }
 
 Eigenpairs eigenpairsAbove(const Eigen::SparseMatrix<double>& matrix, double bound) {

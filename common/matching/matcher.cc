@@ -12,26 +12,6 @@
 namespace shoal::matching {
 namespace {
 
-void checkOptions(const MatcherOptions& options) {
-  const std::vector<std::string>& names = matcherNames();
-  if (std::find(names.begin(), names.end(), options.matcher) == names.end()) {
-    std::string built;
-    for (const std::string& name : names) built += (built.empty() ? "" : ", ") + name;
-    const bool planned = options.matcher == "shoal" || options.matcher == "incremental";
-    throw std::invalid_argument("matcher \"" + options.matcher +
-                                (planned ? "\" is not built yet" : "\" is unknown") +
-                                "; built are: " + built);
-  }
-  similarityNamed(options.similarity);
-  if (!(options.sigma >= 1e-9 && options.sigma <= 1.0)) {
-    throw std::invalid_argument("sigma must lie in [1e-9, 1], got " + std::to_string(options.sigma));
-  }
-  if (!options.distinct && options.matcher != "clear") {
-    throw std::invalid_argument("matcher \"" + options.matcher +
-                                "\" keeps the labels of one robot apart; merging them is built for: clear");
-  }
-}
-
 Clustering clear(const AssociationGraph& graph, bool distinct) {
   ClearOptions options;
   options.distinct = distinct;
@@ -57,6 +37,26 @@ Clustering withoutEmptyTopics(const DescriptorSet& topics, Match match) {
 
 }  // namespace
 
+void check(const MatcherOptions& options) {
+  const std::vector<std::string>& names = matcherNames();
+  if (std::find(names.begin(), names.end(), options.matcher) == names.end()) {
+    std::string built;
+    for (const std::string& name : names) built += (built.empty() ? "" : ", ") + name;
+    const bool planned = options.matcher == "shoal" || options.matcher == "incremental";
+    throw std::invalid_argument("matcher \"" + options.matcher +
+                                (planned ? "\" is not built yet" : "\" is unknown") +
+                                "; built are: " + built);
+  }
+  similarityNamed(options.similarity);
+  if (!(options.sigma >= 1e-9 && options.sigma <= 1.0)) {
+    throw std::invalid_argument("sigma must lie in [1e-9, 1], got " + std::to_string(options.sigma));
+  }
+  if (!options.distinct && options.matcher != "clear") {
+    throw std::invalid_argument("matcher \"" + options.matcher +
+                                "\" keeps the labels of one robot apart; merging them is built for: clear");
+  }
+}
+
 const std::vector<std::string>& matcherNames() {
   static const std::vector<std::string> names{"id", "hungarian", "clear"};
   return names;
@@ -65,7 +65,7 @@ const std::vector<std::string>& matcherNames() {
 std::string usualSimilarity(std::string_view matcher) { return matcher == "hungarian" ? "l2" : "cosine"; }
 
 Clustering match(const DescriptorSet& topics, const MatcherOptions& options) {
-  checkOptions(options);
+  check(options);
   check(topics);
   if (options.matcher == "id") return matchById(topics);
   const Similarity similarity = similarityNamed(options.similarity);
@@ -76,7 +76,7 @@ Clustering match(const DescriptorSet& topics, const MatcherOptions& options) {
 }
 
 Clustering match(const AssociationGraph& graph, const MatcherOptions& options) {
-  checkOptions(options);
+  check(options);
   if (options.matcher != "clear") {
     throw std::invalid_argument("matcher \"" + options.matcher +
                                 "\" looks at the topics themselves and cannot match a graph; \"clear\" can");

@@ -20,6 +20,9 @@ struct MatcherOptions {
   bool distinct = true;               ///< labels of one robot stay apart; false is for "clear" alone
 };
 
+/// @throws std::invalid_argument naming the option that is wrong or not built, and what would be right.
+void check(const MatcherOptions& options);
+
 /// Matchers that are built: "id", "hungarian", "clear".
 const std::vector<std::string>& matcherNames();
 
