@@ -60,7 +60,8 @@ struct CellIndex {
 
 struct CellHash {
   size_t operator()(const CellIndex& c) const {
-    return mix64(mix64(mix64(static_cast<uint32_t>(c.x)) ^ static_cast<uint32_t>(c.y)) ^ static_cast<uint32_t>(c.z));
+    return mix64(mix64(mix64(static_cast<uint32_t>(c.x)) ^ static_cast<uint32_t>(c.y)) ^
+                 static_cast<uint32_t>(c.z));
   }
 };
 

@@ -13,8 +13,8 @@ namespace shoal::world {
 
 /// A pinhole camera without distortion. Pixel index = pixel centre.
 struct Intrinsics {
-  int width = 320;   ///< pixels
-  int height = 240;  ///< pixels
+  int width = 320;                ///< pixels
+  int height = 240;               ///< pixels
   double fx = 200.0, fy = 200.0;  ///< focal lengths, pixels
   double cx = 159.5, cy = 119.5;  ///< principal point, pixels
 
@@ -30,7 +30,7 @@ struct Observation {
   Timestamp time;      ///< mission time of the measurement
   cv::Mat color;       ///< height x width, CV_8UC3, BGR
   cv::Mat depth_m;     ///< height x width, CV_32FC1, metres along the optical axis; <= 0 or not finite = none
-  cv::Mat labels;      ///< truth for scoring only: height x width, CV_8UC1, 255 = unlabelled; empty when unknown
+  cv::Mat labels;  ///< truth for scoring only: height x width, CV_8UC1, 255 = unlabelled; empty when unknown
   Intrinsics intrinsics;
   Pose world_from_camera = Pose::Identity();
 };

@@ -31,7 +31,8 @@ std::vector<Pose> lawnmower(const Extent& share, int32_t observations, double al
 double coverage(const Extent& share, const std::vector<Pose>& path, const Intrinsics& intrinsics);
 
 /// One robot's path (robot < num_robots), or the whole team's one share after the other when `single`.
-std::vector<Pose> surveyPath(const World& world, const SurveyOptions& options, int robot, bool single = false);
+std::vector<Pose> surveyPath(const World& world, const SurveyOptions& options, int robot,
+                             bool single = false);
 
 /// Renders a path frame by frame. `world` must outlive the source.
 std::unique_ptr<ObservationSource> makeSurveySource(const World& world, std::vector<Pose> path,

@@ -33,8 +33,8 @@ class World {
 
   virtual const std::string& name() const = 0;  ///< e.g. "dubai_tile5", "reef:sparse"
   virtual Extent extent() const = 0;
-  virtual double metresPerPixel() const = 0;      ///< native resolution on the ground
-  virtual double defaultCellSize() const = 0;     ///< metres
+  virtual double metresPerPixel() const = 0;                   ///< native resolution on the ground
+  virtual double defaultCellSize() const = 0;                  ///< metres
   virtual const std::vector<TruthClass>& classes() const = 0;  ///< empty when nothing is labelled
 
   /// What a camera sees from a pose: color, depth_m, labels, intrinsics and pose of an Observation;
