@@ -148,6 +148,12 @@ std::vector<Bytes> encodeLabels(std::span<const LabelSummary> labels, uint64_t m
   return messages;
 }
 
+Bytes encode(const LabelsChunk& chunk, int32_t mission, world::Timestamp time) {
+  if (!isTime(time)) throw std::invalid_argument("labels: time of sending is out of range");
+  if (const std::string why = fault(chunk); !why.empty()) throw std::invalid_argument("labels: " + why);
+  return checkedSize(encodeValid(chunk, mission, time), "labels");
+}
+
 Result<LabelsChunk> decodeLabels(std::span<const uint8_t> bytes) {
   const auto message = unpack<labels_t>(bytes);
   if (!message) return message.error();

@@ -35,6 +35,10 @@ std::vector<Bytes> encodeLabels(std::span<const mapping::LabelSummary> labels, u
                                 int32_t mission, world::Timestamp time,
                                 size_t max_payload = kMaxMessageBytes);
 
+/// One chunk as it is.
+/// @throws std::invalid_argument as above, and when it takes more than kMaxMessageBytes.
+Bytes encode(const LabelsChunk& chunk, int32_t mission, world::Timestamp time);
+
 /// The inverse of one message. Whatever the bytes are, it returns; what it returns encodes to the same bytes.
 Result<LabelsChunk> decodeLabels(std::span<const uint8_t> bytes);
 

@@ -35,6 +35,19 @@ std::string faultOf(std::span<const GlobalCell> cells) {
   return {};
 }
 
+std::string fault(const MapChunk& chunk) {
+  if (chunk.num_chunks < 1 || chunk.chunk < 0 || chunk.chunk >= chunk.num_chunks)
+    return "chunks are numbered from 0";
+  if (!isBrick(chunk.brick)) return "brick coordinates lie in [-2^27, 2^27)";
+  if (chunk.cells.empty() && (chunk.num_chunks != 1 || chunk.brick != std::array<int32_t, 3>{})) {
+    return "a chunk is empty, and not the only one";
+  }
+  for (const GlobalCell& c : chunk.cells) {
+    if (mapping::brickOf(c.cell) != chunk.brick) return "a cell lies outside the brick";
+  }
+  return faultOf(chunk.cells);
+}
+
 struct Columns {
   Palette labels, robots, times;
   std::vector<int32_t> steps;
@@ -142,18 +155,22 @@ std::vector<Bytes> encodeMap(const mapping::GlobalMap& map, uint64_t map_digest,
   return messages;
 }
 
+Bytes encode(const MapChunk& chunk, int32_t mission, world::Timestamp time) {
+  if (!isTime(time)) throw std::invalid_argument("map: time of sending is out of range");
+  if (const std::string why = fault(chunk); !why.empty()) throw std::invalid_argument("map: " + why);
+  return checkedSize(encodeValid(chunk, mission, time), "map");
+}
+
 Result<MapChunk> decodeMap(std::span<const uint8_t> bytes) {
   const auto message = unpack<map_t>(bytes);
   if (!message) return message.error();
   const map_t& m = *message;
   MapChunk chunk{
       static_cast<uint64_t>(m.map_digest), m.chunk, m.num_chunks, {m.brick_x, m.brick_y, m.brick_z}, {}};
-  const bool empty_map = m.fused_cells == 0 && m.num_chunks == 1 && chunk.brick == std::array<int32_t, 3>{};
-  if ((m.fused_cells < 1 && !empty_map) || m.fused_cells > kMaxBrickCells || !isBrick(chunk.brick) ||
-      m.num_chunks < 1 || m.chunk < 0 || m.chunk >= m.num_chunks) {
+  if (m.fused_cells < 0 || m.fused_cells > kMaxBrickCells || !isBrick(chunk.brick))
     return DecodeError::kBadField;
-  }
   if (!decodeCells(m.payload, m.fused_cells, chunk)) return DecodeError::kBadPayload;
+  if (!fault(chunk).empty()) return DecodeError::kBadField;
   const Bytes again = encodeValid(chunk, m.mission, {m.utime});
   if (!std::equal(again.begin(), again.end(), bytes.begin(), bytes.end())) return DecodeError::kNotCanonical;
   return chunk;

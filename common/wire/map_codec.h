@@ -37,6 +37,10 @@ uint8_t certaintySteps(float certainty);
 std::vector<Bytes> encodeMap(const mapping::GlobalMap& map, uint64_t map_digest, int32_t mission,
                              world::Timestamp time, size_t max_payload = kMaxMessageBytes);
 
+/// One chunk as it is.
+/// @throws std::invalid_argument as above, and when it takes more than kMaxMessageBytes.
+Bytes encode(const MapChunk& chunk, int32_t mission, world::Timestamp time);
+
 /// The inverse of one message. Whatever the bytes are, it returns; what it returns encodes to the same bytes.
 Result<MapChunk> decodeMap(std::span<const uint8_t> bytes);
 

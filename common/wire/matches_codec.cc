@@ -111,6 +111,13 @@ std::vector<Bytes> encodeMatches(std::span<const Correspondence> correspondences
   return messages;
 }
 
+Bytes encode(const MatchesChunk& chunk, int32_t mission, world::Timestamp time) {
+  if (time.us < 0 || time.us > kMaxTimeUs)
+    throw std::invalid_argument("matches: time of sending is out of range");
+  if (const std::string why = fault(chunk); !why.empty()) throw std::invalid_argument("matches: " + why);
+  return checkedSize(encodeValid(chunk, mission, time), "matches");
+}
+
 Result<MatchesChunk> decodeMatches(std::span<const uint8_t> bytes) {
   const auto message = unpack<matches_t>(bytes);
   if (!message) return message.error();

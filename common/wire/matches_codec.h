@@ -32,6 +32,10 @@ std::vector<Bytes> encodeMatches(std::span<const mapping::Correspondence> corres
                                  uint64_t map_digest, int32_t mission, world::Timestamp time,
                                  size_t max_payload = kMaxMessageBytes);
 
+/// One chunk as it is.
+/// @throws std::invalid_argument as above, and when it takes more than kMaxMessageBytes.
+Bytes encode(const MatchesChunk& chunk, int32_t mission, world::Timestamp time);
+
 /// The inverse of one message. Whatever the bytes are, it returns; what it returns encodes to the same bytes.
 Result<MatchesChunk> decodeMatches(std::span<const uint8_t> bytes);
 

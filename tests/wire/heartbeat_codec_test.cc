@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "shoal/wire/heartbeat_codec.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "examples.h"
+
+namespace shoal::wire {
+namespace {
+
+TEST(HeartbeatCodecTest, KeepsEveryField) {
+  Random random(1);
+  for (int trial = 0; trial < 200; ++trial) {
+    const Heartbeat heartbeat = noiseHeartbeat(trial % 50, 1 + trial % 90, random);
+    const auto decoded = decodeHeartbeat(encode(heartbeat));
+    ASSERT_TRUE(decoded.ok()) << name(decoded.error());
+    EXPECT_TRUE(*decoded == heartbeat);
+    EXPECT_TRUE(std::signbit(decoded->z_m));  // -0 is its own bytes
+  }
+}
+
+TEST(HeartbeatCodecTest, IsSmallForTwelveRobots) {
+  Random random(2);
+  for (int trial = 0; trial < 100; ++trial) EXPECT_LT(encode(noiseHeartbeat(12, 1, random)).size(), 260u);
+}
+
+TEST(HeartbeatCodecTest, HoldsARosterOf256Robots) {
+  Random random(3);
+  const Heartbeat heartbeat = noiseHeartbeat(256, 1, random);
+  const Bytes bytes = encode(heartbeat, maxPayload(30));
+  EXPECT_LE(bytes.size(), maxPayload(30));
+  const auto decoded = decodeHeartbeat(bytes);
+  ASSERT_TRUE(decoded.ok());
+  EXPECT_EQ(decoded->roster, heartbeat.roster);
+}
+
+TEST(HeartbeatCodecTest, CutsARosterThatDoesNotFitAtItsHighEnd) {
+  Random random(4);
+  const Heartbeat heartbeat = noiseHeartbeat(256, 39, random);
+  for (const size_t max_payload : {200u, 500u, 1330u}) {
+    const Bytes bytes = encode(heartbeat, max_payload);
+    EXPECT_LE(bytes.size(), max_payload);
+    EXPECT_GT(bytes.size() + 7, max_payload);  // another robot takes at most 7 bytes
+    const auto decoded = decodeHeartbeat(bytes);
+    ASSERT_TRUE(decoded.ok());
+    ASSERT_LT(decoded->roster.size(), heartbeat.roster.size());
+    EXPECT_TRUE(std::equal(decoded->roster.begin(), decoded->roster.end(), heartbeat.roster.begin()));
+  }
+}
+
+TEST(HeartbeatCodecTest, RefusesToEncodeNonsense) {
+  const auto broken = [](auto change) {
+    Heartbeat heartbeat;
+    change(heartbeat);
+    EXPECT_THROW(encode(heartbeat), std::invalid_argument);
+  };
+  EXPECT_NO_THROW(encode(Heartbeat{}));
+  broken([](Heartbeat& h) { h.time.us = -1; });
+  broken([](Heartbeat& h) { h.epoch = -1; });
+  broken([](Heartbeat& h) { h.observation = -2; });
+  broken([](Heartbeat& h) { h.phase = static_cast<Phase>(4); });
+  broken([](Heartbeat& h) { h.num_topics = 10001; });
+  broken([](Heartbeat& h) { h.bytes_sent = -1; });
+  broken([](Heartbeat& h) { h.x_m = std::numeric_limits<float>::quiet_NaN(); });
+  broken([](Heartbeat& h) { h.ms_per_frame = std::numeric_limits<float>::infinity(); });
+  broken([](Heartbeat& h) { h.cell_size_m = 0; });
+  broken([](Heartbeat& h) { h.class_bytes[5] = -1; });
+  broken([](Heartbeat& h) { h.roster = {{world::RobotId{2}, 0}, {world::RobotId{2}, 0}}; });
+  broken([](Heartbeat& h) { h.roster = {{world::RobotId{10000}, 0}}; });
+  EXPECT_THROW(encode(Heartbeat{}, 100), std::invalid_argument);
+}
+
+TEST(HeartbeatCodecTest, FoldsDigestsOfSharesByHalves) {
+  EXPECT_EQ(shareDigest(0), 0u);
+  EXPECT_EQ(shareDigest(0x00000001'00000000u), 1u);
+  EXPECT_EQ(shareDigest(0x12345678'00000000u ^ 0x1u), 0x12345679u);
+}
+
+}  // namespace
+}  // namespace shoal::wire
