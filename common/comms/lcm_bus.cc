@@ -29,7 +29,7 @@ int millisecondsUntil(Clock::time_point deadline) {
 struct LcmBus::Impl {
   explicit Impl(const std::string& url_in, size_t max) : url(url_in), max_queue(max), transport(url_in) {}
 
-  void onMessage(const lcm::ReceiveBuffer* buffer, const std::string& channel) noexcept;
+  void onMessage(const lcm::ReceiveBuffer& buffer, const std::string& channel) noexcept;
 
   std::string url;
   size_t max_queue;
@@ -41,8 +41,8 @@ struct LcmBus::Impl {
 
 // Called from inside LCM, which an exception would leave locked. A datagram without a channel's NUL arrives
 // with a data_size near 2^32: nothing is read before the sizes are known to be sound.
-void LcmBus::Impl::onMessage(const lcm::ReceiveBuffer* buffer, const std::string& channel) noexcept {
-  if (messageSize(channel.size(), buffer->data_size) > kMaxMessageBytes) {
+void LcmBus::Impl::onMessage(const lcm::ReceiveBuffer& buffer, const std::string& channel) noexcept {
+  if (messageSize(channel.size(), buffer.data_size) > kMaxMessageBytes) {
     ++counts.bad_size;
     return;
   }
@@ -55,8 +55,8 @@ void LcmBus::Impl::onMessage(const lcm::ReceiveBuffer* buffer, const std::string
       ++counts.bad_channel;
       return;
     }
-    const auto* bytes = static_cast<const uint8_t*>(buffer->data);
-    queue.push_back({channel, Bytes(bytes, bytes + buffer->data_size)});
+    const auto* bytes = static_cast<const uint8_t*>(buffer.data);
+    queue.push_back({channel, Bytes(bytes, bytes + buffer.data_size)});
   } catch (...) {  // no memory
     ++counts.dropped;
   }
@@ -70,7 +70,12 @@ LcmBus::LcmBus(const std::string& url, const LcmBusOptions& options) {
                              "; without a multicast route, run: sudo ip route add 224.0.0.0/4 dev lo");
   };
   if (!impl_->transport.good()) fail("the socket cannot be set up");
-  lcm::Subscription* subscription = impl_->transport.subscribe(kAllChannels, &Impl::onMessage, impl_.get());
+  // A function, for g++ 12 miscompiles LCM's way of calling a member under -fsanitize=vptr.
+  using Handler = void (*)(const lcm::ReceiveBuffer*, const std::string&, Impl*);
+  const Handler handler = [](const lcm::ReceiveBuffer* buffer, const std::string& channel, Impl* impl) {
+    impl->onMessage(*buffer, channel);
+  };
+  lcm::Subscription* subscription = impl_->transport.subscribeFunction(kAllChannels, handler, impl_.get());
   if (subscription == nullptr) fail("subscribing failed");
   subscription->setQueueCapacity(0);         // unlimited: the bound is ours, with a counter
   impl_->fd = impl_->transport.getFileno();  // starts the receiving thread, with LCM's self test

@@ -178,6 +178,15 @@ TEST(BudgetTest, TheWorstSecondMatchesBruteForce) {
   }
 }
 
+TEST(BudgetTest, ASecondIncludesBothOfItsEnds) {
+  Budget budget(0);
+  budget.spend(0, 10);
+  budget.spend(kSecond, 10);
+  EXPECT_EQ(budget.worst().bytes, 20);
+  budget.spend(2 * kSecond + 1, 15);
+  EXPECT_EQ(budget.worst().bytes, 20);
+}
+
 TEST(BudgetTest, AfterACrashSupposesTheBudgetWasUsedUp) {
   for (const size_t largest : {500u, 1428u}) {
     // What the process did before: as much as possible in the last moment.

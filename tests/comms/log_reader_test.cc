@@ -89,6 +89,15 @@ TEST(LogReaderTest, GoesOnAfterRubbish) {
   EXPECT_EQ(result.counts.damaged_bytes, 154u);
 }
 
+// The search goes in steps of 64 KiB: a sync word may lie across two of them.
+TEST(LogReaderTest, GoesOnAfterLongRubbishOfAnyLength) {
+  for (size_t length = 65536 - 8; length < 65536 + 8; ++length) {
+    Bytes log(length, 0xED);
+    append(log, event(0, "A", payload(0)));
+    EXPECT_EQ(read(log).counts.good, 1u) << length;
+  }
+}
+
 TEST(LogReaderTest, SurvivesTruncationAtEveryByte) {
   Bytes log;
   std::vector<size_t> ends;
