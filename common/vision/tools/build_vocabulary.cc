@@ -15,10 +15,12 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "shoal/random.h"
 #include "shoal/vision/equalized_channels.h"
 #include "shoal/vision/k_majority.h"
 #include "shoal/vision/orb_descriptors.h"
 #include "shoal/vision/vocabulary.h"
+#include "shoal/world/world.h"
 
 namespace {
 
@@ -28,6 +30,8 @@ using shoal::vision::BinaryWord;
 constexpr int kLongestSide = 1280;   // pixels; larger photographs are shrunk: they are soft at full size
 const cv::Size kFrame{320, 240};     // what a robot's camera sees
 constexpr size_t kPerChannel = 500;  // descriptors of one channel of one frame, spread over its key points
+constexpr uint64_t kReefSeed = 20210530;  // a reef that no mission flies by default
+constexpr int kReefFrames = 60;           // of one reef
 
 // Pictures under the folder, by path in byte order, so that a rebuild sees them alike.
 std::vector<fs::path> picturesIn(const fs::path& folder) {
@@ -69,20 +73,40 @@ void describePicture(const cv::Mat& picture, std::vector<BinaryWord>& descriptor
   }
 }
 
+// Frames at random places and headings, at the altitude where a pixel of the camera is one of the reef.
+void describeReef(const std::string& spec, std::vector<BinaryWord>& descriptors) {
+  const auto reef = shoal::world::openWorld(spec, kReefSeed);
+  const shoal::world::Intrinsics camera;
+  const shoal::world::Extent extent = reef->extent();
+  const double altitude_m = camera.fx * reef->metresPerPixel();
+  const double margin_m = std::hypot(camera.width, camera.height) / 2.0 * reef->metresPerPixel();
+  shoal::Random random(kReefSeed);
+  const auto between = [&](double low, double high) { return low + random.uniform() * (high - low); };
+  for (int frame = 0; frame < kReefFrames; ++frame) {
+    const double x = between(extent.min_x + margin_m, extent.max_x - margin_m);
+    const double y = between(extent.min_y + margin_m, extent.max_y - margin_m);
+    const double yaw_rad = between(0.0, 6.283185307179586);
+    describeFrame(reef->render(camera, shoal::world::lookingDown({x, y, altitude_m}, yaw_rad)).color,
+                  descriptors);
+  }
+}
+
 void write(const fs::path& file, const std::vector<uint8_t>& bytes) {
   std::ofstream out(file, std::ios::binary);
   out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   if (!out.flush()) throw std::runtime_error("cannot write " + file.string());
 }
 
-void build(const fs::path& out, const std::vector<fs::path>& folders) {
+void describeFolder(const fs::path& folder, std::vector<BinaryWord>& descriptors) {
+  for (const fs::path& file : picturesIn(folder)) describePicture(load(file), descriptors);
+}
+
+void build(const fs::path& out, const std::vector<std::string>& sources) {
   std::vector<BinaryWord> descriptors;
-  for (const fs::path& folder : folders) {
-    const auto files = picturesIn(folder);
+  for (const std::string& source : sources) {
     const size_t before = descriptors.size();
-    for (const fs::path& file : files) describePicture(load(file), descriptors);
-    std::cerr << folder.string() << ": " << files.size() << " pictures, " << descriptors.size() - before
-              << " descriptors\n";
+    source.starts_with("reef:") ? describeReef(source, descriptors) : describeFolder(source, descriptors);
+    std::cerr << source << ": " << descriptors.size() - before << " descriptors\n";
   }
   const auto result =
       shoal::vision::kMajority(descriptors, {}, [](int round, int64_t changed, double distance) {
@@ -99,13 +123,12 @@ void build(const fs::path& out, const std::vector<fs::path>& folders) {
 
 int main(int argc, char** argv) {
   if (argc < 3 || std::string(argv[1]).starts_with("-")) {
-    std::cerr
-        << "usage: shoal_build_vocabulary OUT.voc PICTURE_FOLDER...\n"
-           "Trains 5000 binary words on the pictures and writes them. Equal pictures give equal bytes.\n";
+    std::cerr << "usage: shoal_build_vocabulary OUT.voc FOLDER_OF_PICTURES|reef:STYLE...\n"
+                 "Trains 5000 binary words on the sources and writes them. Equal sources give equal bytes.\n";
     return 2;
   }
   try {
-    build(argv[1], std::vector<fs::path>(argv + 2, argv + argc));
+    build(argv[1], std::vector<std::string>(argv + 2, argv + argc));
   } catch (const std::exception& error) {
     std::cerr << error.what() << "\n";
     return 1;

@@ -1,7 +1,8 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Rebuilds common/vision/vocabularies from photographs and textures of Debian packages. The packages are
-# unpacked into a temporary folder, not installed. On Debian 12:
+# Rebuilds common/vision/vocabularies from photographs and textures of Debian packages and from the
+# project's procedural reefs. The packages are unpacked into a temporary folder, not installed. On Debian 12, in a
+# configured checkout:
 #
 #     common/vision/tools/rebuild-vocabularies.sh [BUILD_FOLDER]     (default: build)
 set -euo pipefail
@@ -29,4 +30,5 @@ terrain=unpacked/usr/share/games/colobot/textures
 cp "$terrain"/{chili,desert,dirty,green,lava,mars,mix,water}*.png "$terrain"/{moon103,roca2,rocb2,terra002}.png \
    textures/
 
-"$build/bin/shoal_build_vocabulary" "$root/common/vision/vocabularies/orb_5000.voc" photographs textures
+"$build/bin/shoal_build_vocabulary" "$root/common/vision/vocabularies/orb_5000.voc" photographs textures \
+  reef:sparse reef:varied reef:tuning
