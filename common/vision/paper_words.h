@@ -13,9 +13,10 @@ namespace shoal::vision {
 /// The words of profile "paper": ORB on the L, a and b channels, each with an id range of its own over one
 /// vocabulary, then hue and intensity. With the 5000 words of the shipped vocabulary 15436 words in all.
 ///
-/// Source: S. Jamieson et al. 2021 and its implementation(Sunshine). We differ in three
+/// Source: S. Jamieson et al. 2021 and its implementation Sunshine. We differ in three
 /// places: the nearest word is exact, not approximate; words without a valid depth are dropped; and key
-/// points are found on the equalised L itself, not on an L that went through BGR and back.
+/// points are found on the equalised L itself, not on an L that went through BGR and back. Pictures of
+/// ground seldom have corners in 8-bit a and b, so those groups may stay nearly empty.
 ///
 /// Pure: no state beyond the vocabulary, so one object may serve several threads.
 class PaperWords : public WordExtractor {

@@ -1,8 +1,8 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
 # Rebuilds common/vision/vocabularies from photographs and textures of Debian packages and from the
-# project's procedural reefs. The packages are unpacked into a temporary folder, not installed. On Debian 12, in a
-# configured checkout:
+# project's procedural reefs. The packages are unpacked into a temporary folder, not installed. On Debian 12, in
+# a configured checkout:
 #
 #     common/vision/tools/rebuild-vocabularies.sh [BUILD_FOLDER]     (default: build)
 set -euo pipefail
