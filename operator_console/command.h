@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+
+#include <CLI/CLI.hpp>
+
+namespace shoal::console {
+
+/// What the chosen subcommand does once all flags have been read. Returns the exit code: 0 good, 1 failed.
+/// Throws std::invalid_argument for a bad flag (exit 2), any other exception for a failure (exit 1).
+using Action = std::function<int()>;
+
+// Each adds a subcommand to `app` that sets `chosen` when it is the one. Both outlive parsing.
+void addLaunchCommand(CLI::App& app, Action& chosen);
+void addMatchCommand(CLI::App& app, Action& chosen);
+
+/// status, labels, at X Y, export: one grammar for a running node, a finished run and a recording.
+void addQuestionCommands(CLI::App& app, Action& chosen);
+void addEvaluateCommand(CLI::App& app, Action& chosen);
+
+/// Subcommands that are not built yet: refused by name, whatever follows them.
+void addUnbuiltCommands(CLI::App& app, Action& chosen);
+
+}  // namespace shoal::console

@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "operator_console/launch.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+#include <set>
+#include <stdexcept>
+#include <string_view>
+
+#include <spdlog/spdlog.h>
+
+#include "operator_console/finish_run.h"
+#include "operator_console/log_check.h"
+#include "operator_console/mission_commands.h"
+#include "operator_console/mission_watch.h"
+#include "operator_console/progress.h"
+#include "operator_console/stop_signal.h"
+#include "operator_console/supervisor.h"
+#include "shoal/comms/kernel_limits.h"
+#include "shoal/comms/lcm_bus.h"
+#include "shoal/comms/lcm_url.h"
+#include "shoal/random.h"
+
+namespace shoal::console {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+constexpr milliseconds kListenFirst{1500};  // a heartbeat comes about once a second
+constexpr milliseconds kRedraw{250};
+constexpr seconds kPatience{5};            // between SIGTERM and SIGKILL when interrupted
+constexpr seconds kWriting{60};            // for writing files at the end
+constexpr seconds kStarting{20};           // for the logger and the fusion node to be there
+constexpr milliseconds kLoggerFlush{500};  // lcm-logger flushes every 100 ms
+constexpr milliseconds kLogCheck{2000};    // between two looks at the recording
+
+struct Interrupted {
+  int signal;
+};
+
+struct Failed : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+std::string joined(const std::vector<std::string>& items, size_t most = 5) {
+  std::string text;
+  for (size_t i = 0; i < std::min(items.size(), most); ++i) text += (i ? ", " : "") + items[i];
+  if (items.size() > most) text += " and " + std::to_string(items.size() - most) + " more";
+  return text;
+}
+
+// A number that no other mission has: it is an identity, nothing is computed from it.
+int32_t newMissionId() {
+  const auto now = static_cast<uint64_t>(std::chrono::system_clock::now().time_since_epoch().count());
+  return static_cast<int32_t>(hashCombine(now, static_cast<uint64_t>(getpid())) % 0x7fffffffu) + 1;
+}
+
+// Makes the folder ready: without the files of a mission that was there before.
+void prepareFolder(const LaunchOptions& options) {
+  const fs::path out = options.out;
+  if (fs::exists(out / "summary.json") && !options.overwrite) {
+    throw std::invalid_argument("--out " + options.out +
+                                " holds a finished mission; name another folder, or add --overwrite");
+  }
+  if (fs::exists(out / "logs" / "OPERATOR.log")) {
+    for (const std::string_view name : {"robots", "single", "logs", "state", "global_map.csv",
+                                        "global_map.png", "labels.csv", "summary.json", "mission.lcmlog"}) {
+      fs::remove_all(out / name);
+    }
+  }
+  std::error_code error;
+  fs::create_directories(out / "logs", error);
+  if (error) throw std::invalid_argument("--out " + options.out + " cannot be made: " + error.message());
+}
+
+class Mission {
+ public:
+  explicit Mission(const LaunchOptions& options)
+      : options_(options),
+        bus_(options.lcm_url),
+        watch_(options.mission, options.num_robots, options.budget),
+        started_(Clock::now()) {}
+
+  int run(bool url_was_given);
+
+ private:
+  void refuseOtherMissions();
+  void startAll();
+  void turn();
+  void checkEnded(const Ended& ended);
+  template <typename Done>
+  bool turnUntil(Clock::duration limit, Done&& done);
+  std::vector<std::string> settle();
+  std::vector<std::string> settleRecording();
+  void stop(const std::vector<std::string>& names, int signal, const char* doing);
+  void stopTeam();
+  void stopLogger();
+
+  LaunchOptions options_;
+  comms::LcmBus bus_;
+  MissionWatch watch_;
+  Supervisor children_;
+  TerminalBlock block_;
+  Clock::time_point started_, drawn_;
+  std::set<std::string> may_end_ = {"single"};  // in good order
+  const char* doing_ = "starting";
+};
+
+// Listens, redraws, and throws when the mission cannot go on.
+void Mission::turn() {
+  bus_.receive(50, [this](const comms::Packet& packet) { watch_.hear(packet); });
+  if (stopSignal() != 0) throw Interrupted{stopSignal()};
+  for (const Ended& ended : children_.reap()) checkEnded(ended);
+  if (const auto other = watch_.otherMission()) {
+    throw Failed("another mission (" + std::to_string(*other) + ") is heard on " + options_.lcm_url);
+  }
+  if (Clock::now() - drawn_ < kRedraw) return;
+  drawn_ = Clock::now();
+  block_.draw({options_.num_robots, options_.observations,
+               std::chrono::duration<double>(Clock::now() - started_).count(), doing_, &watch_.nodes()});
+}
+
+void Mission::checkEnded(const Ended& ended) {
+  if (may_end_.contains(ended.name) && ended.inGoodOrder()) return;
+  std::string message = ended.name + " " + ended.how() + (may_end_.contains(ended.name) ? "" : " too early");
+  const auto lines = lastLines(ended.log, 10);
+  message += lines.empty() ? "; " + ended.log + " is empty" : "; the end of " + ended.log + ":";
+  for (const std::string& line : lines) message += "\n  " + line;
+  throw Failed(message);
+}
+
+template <typename Done>
+bool Mission::turnUntil(Clock::duration limit, Done&& done) {
+  const auto deadline = Clock::now() + limit;
+  while (!done()) {
+    if (Clock::now() >= deadline) return false;
+    turn();
+  }
+  return true;
+}
+
+void Mission::refuseOtherMissions() {
+  turnUntil(kListenFirst, [] { return false; });
+  if (!watch_.nodes().empty()) {
+    throw Failed("mission " + std::to_string(options_.mission) + " is heard already on " + options_.lcm_url);
+  }
+}
+
+void Mission::startAll() {
+  if (options_.record) {
+    children_.start(loggerCommand(options_));
+    if (!turnUntil(kStarting, [this] { return fs::exists(recordingPath(options_)); })) {
+      throw Failed("lcm-logger did not begin " + recordingPath(options_));
+    }
+  }
+  // What is said before OPERATOR listens is said again later; waiting only saves time.
+  children_.start(operatorCommand(options_));
+  turnUntil(kStarting, [this] { return fs::exists(operatorStateDir(options_) + "/node.sock"); });
+  for (int robot = 0; robot < options_.num_robots; ++robot) children_.start(robotCommand(options_, robot));
+  if (options_.single) {
+    fs::create_directories(options_.out + "/single");
+    children_.start(singleCommand(options_));
+  }
+}
+
+// Until the team has landed and agrees, or nothing has changed for too long. Returns what lacks then.
+std::vector<std::string> Mission::settle() {
+  doing_ = "flying";
+  const auto limit =
+      std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(options_.settle_timeout_s));
+  uint64_t progress = 0;
+  auto changed = Clock::now();
+  while (true) {
+    turn();
+    const bool landed = watch_.allLanded();
+    if (landed) doing_ = "landed; the nodes come to agree";
+    if (watch_.progress() != progress) {
+      progress = watch_.progress();
+      changed = Clock::now();
+      if (landed && watch_.lacking().empty()) return {};
+    }
+    if (Clock::now() - changed < limit) continue;
+    if (const auto unheard = watch_.unheard(); !unheard.empty()) {
+      throw Failed("nothing was heard from " + joined(unheard) + " on " + options_.lcm_url + " for " +
+                   std::to_string(static_cast<int>(options_.settle_timeout_s)) + " s");
+    }
+    if (landed) return watch_.lacking();
+  }
+}
+
+// Until the recording alone adds up to the state: what it missed, robots say again.
+std::vector<std::string> Mission::settleRecording() {
+  doing_ = "landed; the recording is checked";
+  const auto deadline = Clock::now() + std::chrono::duration<double>(options_.settle_timeout_s);
+  while (true) {
+    turnUntil(kLoggerFlush, [] { return false; });
+    const auto lacking =
+        lackingInLog(recordingPath(options_), options_.mission, watch_.stateDigest(), watch_.nodes());
+    if (lacking.empty() || Clock::now() >= deadline) return lacking;
+    turnUntil(kLogCheck, [] { return false; });
+  }
+}
+
+void Mission::stop(const std::vector<std::string>& names, int signal, const char* doing) {
+  doing_ = doing;
+  for (const std::string& name : names) {
+    may_end_.insert(name);
+    children_.signal(name, signal);
+  }
+  const auto gone = [&] {
+    return std::ranges::none_of(names, [this](const std::string& name) { return children_.isRunning(name); });
+  };
+  if (!turnUntil(kWriting, gone)) {
+    throw Failed("did not end within " + std::to_string(kWriting.count()) + " s: " + joined(names));
+  }
+}
+
+void Mission::stopTeam() {
+  std::vector<std::string> robots;
+  for (int robot = 0; robot < options_.num_robots; ++robot) {
+    robots.push_back(world::name(world::RobotId{robot}));
+  }
+  stop(robots, SIGTERM, "the robots write their files");
+  stop({"OPERATOR"}, SIGTERM, "the map is written");
+}
+
+void Mission::stopLogger() {
+  turnUntil(kLoggerFlush, [] { return false; });
+  may_end_.insert("logger");
+  stop({"logger"}, SIGINT, "the recording is closed");
+}
+
+int Mission::run(bool url_was_given) {
+  try {
+    if (url_was_given) refuseOtherMissions();
+    started_ = Clock::now();
+    startAll();
+    std::vector<std::string> lacking = settle();
+    RunInfo run;
+    run.options = options_;
+    run.converged = lacking.empty();
+    run.converged_s = watch_.missionTime();
+    run.state_digest = watch_.stateDigest();
+    run.map_digest = watch_.mapDigest();
+    if (lacking.empty() && options_.record) lacking = settleRecording();
+    stopTeam();
+    if (options_.record) stopLogger();
+    doing_ = "waiting for the robot that flies alone";
+    turnUntil(Clock::duration::max() / 4, [this] { return !children_.isRunning("single"); });
+    block_.clear();
+    run.last_heartbeats = watch_.nodes();
+    run.nodes = watch_.statuses();
+    run.worst_window = watch_.worstWindow();
+    std::fputs(finishRun(run).c_str(), stdout);
+    if (lacking.empty()) return 0;
+    spdlog::error("{} within {} s: {}",
+                  run.converged ? "the recording is not whole" : "the nodes do not agree",
+                  options_.settle_timeout_s, joined(lacking));
+    return 1;
+  } catch (const Interrupted& interrupted) {
+    block_.clear();
+    spdlog::warn("stopped by signal {}; what was written so far is in {}", interrupted.signal, options_.out);
+    children_.stopAll(kPatience);
+    return 128 + interrupted.signal;
+  } catch (const Failed& failed) {
+    block_.clear();
+    spdlog::error("{}", failed.what());
+    children_.stopAll(kPatience);
+    return 1;
+  }
+}
+
+}  // namespace
+
+int launch(LaunchOptions options) {
+  check(options);
+  options = completed(std::move(options));
+  options.out = fs::absolute(options.out).lexically_normal();
+  prepareFolder(options);
+  if (options.mission == 0) options.mission = newMissionId();
+  const bool url_was_given = !options.lcm_url.empty();
+  if (!url_was_given) options.lcm_url = comms::chooseFreeUrl(static_cast<uint64_t>(options.mission));
+  if (const auto advice = comms::receiveBufferAdvice()) {
+    spdlog::warn("the kernel's receive buffers are small, datagrams may be lost; this helps: {}", *advice);
+  }
+  catchStopSignals();
+  spdlog::info("mission {}: {} robots over {} on {}, files in {}", options.mission, options.num_robots,
+               options.world, options.lcm_url, options.out);
+  return Mission(options).run(url_was_given);
+}
+
+}  // namespace shoal::console

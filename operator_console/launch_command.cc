@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include "fusion_node/process.h"
+#include "operator_console/command.h"
+#include "operator_console/launch.h"
+
+namespace shoal::console {
+namespace {
+
+struct Flags {
+  LaunchOptions launch;
+  std::string sigma = "0.75";
+  std::string similarity;  // empty: the one that goes with the matcher
+  std::string kill_plan;
+};
+
+}  // namespace
+
+void addLaunchCommand(CLI::App& app, Action& chosen) {
+  CLI::App* command = app.add_subcommand("launch", "fly a mission on this computer and end when all agree");
+  const auto flags = std::make_shared<Flags>();
+  LaunchOptions& o = flags->launch;
+  command->add_option("--world", o.world, "reef:sparse, reef:varied, reef:tuning or a world folder");
+  command->add_option("--robots", o.num_robots, "how many share the area")->capture_default_str();
+  command->add_option("--observations", o.observations, "images per robot, 0 = as many as cover its share")
+      ->capture_default_str();
+  command->add_option("--seed", o.seed, "decides all randomness")->capture_default_str();
+  command
+      ->add_option("--budget", o.budget, "bytes per second of mission time for each process, 0 = unlimited")
+      ->capture_default_str();
+  command->add_option("--link", o.link, "clean; mesh, acoustic, satellite and files are not built yet")
+      ->capture_default_str();
+  command->add_option("--rate", o.rate, "mission seconds per wall second: 1, 10, or max")
+      ->capture_default_str();
+  command->add_option("--matcher", o.matcher.matcher, "id, hungarian or clear")->capture_default_str();
+  command->add_option("--similarity", flags->similarity,
+                      "cosine, overlap, l1 or l2 (default: l2 for hungarian, else cosine)");
+  command->add_option("--sigma", flags->sigma, "least similarity of a match, in (0, 1]")
+      ->capture_default_str();
+  command->add_option("--profile", o.profile, "words and hyper-parameters: paper")->capture_default_str();
+  command->add_option("--cell-size-m", o.cell_size_m, "edge of a cell, m (default: the world's)");
+  command->add_option("--altitude-m", o.altitude_m, "camera height, m (default: native resolution)");
+  command->add_option("--frame-period-s", o.frame_period_s, "mission seconds between images")
+      ->capture_default_str();
+  command->add_option("--out", o.out, "folder for the mission's files");
+  command->add_flag("--overwrite", o.overwrite, "replace a finished mission in --out");
+  command->add_flag("--single", o.single, "also fly one robot over the whole area, into single/");
+  command->add_flag("--record", o.record, "record all messages with lcm-logger, into mission.lcmlog");
+  command->add_option("--lcm-url", o.lcm_url, "multicast group (default: a free port of this host)")
+      ->envname("SHOAL_LCM_URL");
+  command->add_option("--mission", o.mission, "mission number (default: a new one)");
+  command
+      ->add_option("--settle-timeout-s", o.settle_timeout_s,
+                   "wall seconds without any change after which a landed team is given up")
+      ->capture_default_str();
+  command->add_option("--kill-plan", flags->kill_plan, "not built yet");
+  command->callback([&app, &chosen, flags] {
+    chosen = [&app, flags] {
+      LaunchOptions options = flags->launch;
+      if (!flags->kill_plan.empty()) throw std::invalid_argument("--kill-plan is not built yet");
+      options.matcher.sigma = fusion_node::parseSigma(flags->sigma);
+      options.matcher.similarity =
+          flags->similarity.empty() ? matching::usualSimilarity(options.matcher.matcher) : flags->similarity;
+      options.log_level = app.get_option("--log-level")->as<std::string>();
+      return launch(std::move(options));
+    };
+  });
+}
+
+}  // namespace shoal::console

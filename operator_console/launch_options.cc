@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "operator_console/launch_options.h"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "fusion_node/process.h"
+#include "shoal/comms/lcm_url.h"
+#include "shoal/world/world.h"
+
+namespace shoal::console {
+namespace {
+
+void demandPositive(const std::string& flag, double value) {
+  if (!(value > 0) || !std::isfinite(value)) {
+    throw std::invalid_argument(flag + " must be a positive number, got " + std::to_string(value));
+  }
+}
+
+}  // namespace
+
+void check(const LaunchOptions& options) {
+  if (options.world.empty()) throw std::invalid_argument("--world is missing, as in --world reef:sparse");
+  if (options.out.empty()) throw std::invalid_argument("--out is missing: a folder for the mission's files");
+  if (options.num_robots < 1 || options.num_robots > 256) {
+    throw std::invalid_argument("--robots must lie in 1 to 256, got " + std::to_string(options.num_robots));
+  }
+  if (options.observations < 0) {
+    throw std::invalid_argument("--observations must be 0 (as many as cover the area) or more, got " +
+                                std::to_string(options.observations));
+  }
+  if (options.budget < 0 || options.budget > INT32_MAX) {
+    throw std::invalid_argument("--budget must be 0 (unlimited) to 2147483647 bytes per second, got " +
+                                std::to_string(options.budget));
+  }
+  if (options.link == "mesh" || options.link == "acoustic" || options.link == "satellite") {
+    throw std::invalid_argument("--link " + options.link + " is not built yet; clean is");
+  }
+  if (options.link != "clean") {
+    throw std::invalid_argument("--link " + options.link + ": link files are not built yet; clean is");
+  }
+  if (options.profile == "best") throw std::invalid_argument("--profile best is not built yet; paper is");
+  if (options.profile != "paper") {
+    throw std::invalid_argument("--profile must be paper, got \"" + options.profile + "\"");
+  }
+  if (options.matcher.matcher == "shoal") {
+    throw std::invalid_argument("--matcher shoal is not built yet; id, hungarian and clear are");
+  }
+  matching::check(options.matcher);
+  fusion_node::parseRate(options.rate);
+  demandPositive("--frame-period-s", options.frame_period_s);
+  demandPositive("--settle-timeout-s", options.settle_timeout_s);
+  if (options.cell_size_m != 0) demandPositive("--cell-size-m", options.cell_size_m);
+  if (options.altitude_m != 0) demandPositive("--altitude-m", options.altitude_m);
+  if (options.mission < 0) throw std::invalid_argument("--mission must be a positive number");
+  if (!options.lcm_url.empty()) comms::parseUrl(options.lcm_url);
+}
+
+LaunchOptions completed(LaunchOptions options) {
+  const auto world = world::openWorld(options.world, options.seed);
+  if (options.cell_size_m == 0) options.cell_size_m = world->defaultCellSize();
+  if (options.altitude_m == 0) options.altitude_m = world::Intrinsics{}.fx * world->metresPerPixel();
+  return options;
+}
+
+}  // namespace shoal::console

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstdio>
+#include <exception>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include <spdlog/spdlog.h>
+#include <CLI/CLI.hpp>
+
+#include "fusion_node/process.h"
+#include "operator_console/command.h"
+#include "operator_console/config_file.h"
+#include "shoal/version.h"
+
+int main(int argc, char** argv) {
+  using namespace shoal;  // NOLINT: a main file
+  CLI::App app{"Flies missions, asks about them, and scores them.", "operator_console"};
+  console::Action chosen;
+  std::string log_level = "info";
+  app.set_version_flag("--version", std::string("operator_console ") + version() + " (" + commit() + ")");
+  app.add_option("--log-level", log_level, "trace, debug, info, warn, error or off")->capture_default_str();
+  app.set_config("--config", "", "mission.toml: any of these flags");
+  app.config_formatter(std::make_shared<console::MissionFile>(app));
+  app.allow_config_extras(true);  // flags of the other programs may stand there too
+  app.require_subcommand(1);
+  app.fallthrough();
+  console::addLaunchCommand(app, chosen);
+  console::addMatchCommand(app, chosen);
+  console::addEvaluateCommand(app, chosen);
+  console::addQuestionCommands(app, chosen);
+  console::addUnbuiltCommands(app, chosen);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  try {
+    fusion_node::setUpLog("console", log_level);
+    return chosen();
+  } catch (const std::invalid_argument& error) {
+    std::fprintf(stderr, "operator_console: %s\n", error.what());
+    return 2;
+  } catch (const std::exception& error) {
+    spdlog::error("{}", error.what());
+    return 1;
+  }
+}

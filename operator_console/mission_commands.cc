@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "operator_console/mission_commands.h"
+
+#include <array>
+#include <charconv>
+
+#include "shoal/comms/lcm_url.h"
+#include "shoal/demand.h"
+#include "shoal/world/ids.h"
+
+namespace shoal::console {
+namespace {
+
+// Shortest text that reads back as the same number.
+std::string text(double value) {
+  std::array<char, 32> buffer{};
+  const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
+  SHOAL_DEMAND(error == std::errc{});
+  return {buffer.data(), end};
+}
+
+std::string logPath(const LaunchOptions& options, const std::string& name) {
+  return options.out + "/logs/" + name + ".log";
+}
+
+void append(std::vector<std::string>& arguments, const std::vector<std::string>& more) {
+  arguments.insert(arguments.end(), more.begin(), more.end());
+}
+
+// What decides what is seen and learnt: the same for a robot of the team and the one that flies alone.
+std::vector<std::string> flightArguments(const LaunchOptions& options) {
+  return {"--source",         options.world,
+          "--robots",         std::to_string(options.num_robots),
+          "--observations",   std::to_string(options.observations),
+          "--seed",           std::to_string(options.seed),
+          "--profile",        options.profile,
+          "--cell-size-m",    text(options.cell_size_m),
+          "--altitude-m",     text(options.altitude_m),
+          "--frame-period-s", text(options.frame_period_s),
+          "--log-level",      options.log_level};
+}
+
+std::vector<std::string> linkArguments(const LaunchOptions& options) {
+  return {"--lcm-url", options.lcm_url, "--budget",  std::to_string(options.budget),
+          "--rate",    options.rate,    "--mission", std::to_string(options.mission)};
+}
+
+}  // namespace
+
+Command loggerCommand(const LaunchOptions& options) {
+  return {"logger",
+          programOnPath("lcm-logger", "liblcm-bin"),
+          {"--lcm-url=" + comms::withReceiveBuffer(options.lcm_url), recordingPath(options)},
+          logPath(options, "logger")};
+}
+
+Command operatorCommand(const LaunchOptions& options) {
+  std::vector<std::string> arguments = {"--node", "OPERATOR"};
+  append(arguments, linkArguments(options));
+  append(arguments,
+         {"--matcher", options.matcher.matcher, "--similarity", options.matcher.similarity, "--sigma",
+          text(options.matcher.sigma), "--cell-size-m", text(options.cell_size_m), "--out", options.out,
+          "--state", operatorStateDir(options), "--log-level", options.log_level});
+  return {"OPERATOR", programBeside("fusion_node"), arguments, logPath(options, "OPERATOR")};
+}
+
+Command robotCommand(const LaunchOptions& options, int robot) {
+  const std::string name = world::name(world::RobotId{robot});
+  std::vector<std::string> arguments = {"--robot", name};
+  append(arguments, flightArguments(options));
+  append(arguments, linkArguments(options));
+  append(arguments, {"--out", options.out, "--linger"});
+  return {name, programBeside("robot_agent"), arguments, logPath(options, name)};
+}
+
+Command singleCommand(const LaunchOptions& options) {
+  std::vector<std::string> arguments = {"--single", "--robot", "R00"};
+  append(arguments, flightArguments(options));
+  append(arguments, {"--rate", "max", "--out", options.out + "/single"});
+  return {"single", programBeside("robot_agent"), arguments, logPath(options, "single")};
+}
+
+std::string recordingPath(const LaunchOptions& options) { return options.out + "/mission.lcmlog"; }
+
+std::string operatorStateDir(const LaunchOptions& options) { return options.out + "/state"; }
+
+}  // namespace shoal::console
