@@ -8,25 +8,27 @@
 
 namespace shoal::world {
 
-/// N smooth quantities over a square [0, nodes - 1] x [0, nodes - 1], one node per unit, bilinear between.
+/// N smooth quantities over a square from (0, 0), known at nodes `spacing_m` apart, bilinear between.
 template <size_t N>
 class CoarseMap {
  public:
   using Values = std::array<float, N>;
 
-  /// `value(x, y)` at every node; nodes >= 2.
+  /// `value(x, y)` at each of nodes x nodes places; nodes >= 2, x and y in metres.
   template <class Function>
-  CoarseMap(int nodes, Function value) : nodes_(nodes) {
+  CoarseMap(int nodes, float spacing_m, Function value) : nodes_(nodes), per_metre_(1.0f / spacing_m) {
     values_.reserve(static_cast<size_t>(nodes) * static_cast<size_t>(nodes));
     for (int y = 0; y < nodes; ++y) {
-      for (int x = 0; x < nodes; ++x) values_.push_back(value(static_cast<float>(x), static_cast<float>(y)));
+      for (int x = 0; x < nodes; ++x) {
+        values_.push_back(value(static_cast<float>(x) * spacing_m, static_cast<float>(y) * spacing_m));
+      }
     }
   }
 
   /// Outside the square, the nearest border.
-  Values at(float x, float y) const {
+  Values at(float x_m, float y_m) const {
     const float last = static_cast<float>(nodes_ - 1);
-    const float cx = std::clamp(x, 0.0f, last), cy = std::clamp(y, 0.0f, last);
+    const float cx = std::clamp(x_m * per_metre_, 0.0f, last), cy = std::clamp(y_m * per_metre_, 0.0f, last);
     const int x0 = std::min(static_cast<int>(cx), nodes_ - 2),
               y0 = std::min(static_cast<int>(cy), nodes_ - 2);
     const float fx = cx - static_cast<float>(x0), fy = cy - static_cast<float>(y0);
@@ -44,6 +46,7 @@ class CoarseMap {
 
  private:
   int nodes_;
+  float per_metre_;             // nodes
   std::vector<Values> values_;  // row by row
 };
 

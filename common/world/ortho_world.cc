@@ -79,6 +79,7 @@ Extent OrthoWorld::extent() const {
 }
 
 Observation OrthoWorld::render(const Intrinsics& intrinsics, const Pose& world_from_camera) const {
+  checkCamera(intrinsics, world_from_camera);
   const cv::Size size(intrinsics.width, intrinsics.height);
   Observation seen;
   seen.intrinsics = intrinsics;

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "shoal/world/coarse_map.h"
+#include "shoal/world/reef_fields.h"
 #include "shoal/world/reef_style.h"
 
 namespace shoal::world {
@@ -24,14 +24,14 @@ struct SeabedPoint {
 /// degrees, so that a camera looking down sees each point of the surface at most once.
 class ReefSurface {
  public:
-  static constexpr float kSide = 250.0f;                         ///< metres
-  static constexpr float kMinHeight = -1.0f, kMaxHeight = 2.5f;  ///< bounds of heightAt(), metres
+  static constexpr float kSide = ReefFields::kSide;              ///< metres
+  static constexpr float kMinHeight = -1.0f, kMaxHeight = 3.0f;  ///< bounds of heightAt(), metres
 
   ReefSurface(ReefStyle style, uint64_t seed);
 
   const ReefStyle& style() const { return style_; }
 
-  /// Height of the surface, metres. Outside the square: of the nearest border, bare.
+  /// Height of the surface, metres; continuous, also beyond the square.
   float heightAt(float x, float y) const;
 
   /// Class and colour, for points of the square. Cost: some 50 ns.
@@ -53,13 +53,11 @@ class ReefSurface {
   static constexpr float kReach = 1.5f;  // of a bump, over its radius
 
   std::span<const Thing> thingsNear(float x, float y) const;
-  void plant(uint64_t seed);
+  void plant();
   void sortIntoBins(const std::vector<Thing>& planted);
 
   ReefStyle style_;
-  CoarseMap<1> ground_height_;
-  CoarseMap<4> ground_kind_;  // how much of each of style_.ground
-  CoarseMap<4> light_;        // red, green, blue; which colour of its class a thing tends to
+  ReefFields fields_;
   TextureTile edges_;
   std::vector<TextureTile> textures_;  // per class
   std::vector<Thing> things_;          // bin after bin of one square metre, those that reach into it

@@ -87,6 +87,7 @@ ReefWorld::ReefWorld(ReefStyle style, uint64_t seed) : surface_(std::move(style)
 
 Observation ReefWorld::render(const Intrinsics& intrinsics, const Pose& world_from_camera) const {
   static const Water water;
+  checkCamera(intrinsics, world_from_camera);
   const cv::Size size(intrinsics.width, intrinsics.height);
   Observation seen;
   seen.intrinsics = intrinsics;

@@ -6,8 +6,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "shoal/demand.h"
-
 namespace shoal::world {
 namespace {
 
@@ -80,9 +78,7 @@ int32_t windowsFor(double length, double window) {
 }
 
 void check(const Intrinsics& intrinsics, double altitude_m) {
-  if (intrinsics.width < 1 || intrinsics.height < 1 || !(intrinsics.fx > 0.0) || !(intrinsics.fy > 0.0)) {
-    throw std::invalid_argument("a camera needs width, height, fx and fy > 0");
-  }
+  checkCamera(intrinsics, Pose::Identity());
   if (!(altitude_m > 0.0) || !std::isfinite(altitude_m)) {
     throw std::invalid_argument("altitude must be finite and > 0 m, got " + std::to_string(altitude_m));
   }

@@ -39,6 +39,7 @@ class World {
 
   /// What a camera sees from a pose: color, depth_m, labels, intrinsics and pose of an Observation;
   /// number and time are the caller's. Pure: the same pose gives the same pixels.
+  /// @throws std::invalid_argument as checkCamera().
   virtual Observation render(const Intrinsics& intrinsics, const Pose& world_from_camera) const = 0;
 
   /// Truth of the cells straight from the world, where the world is a flat labelled picture: the class of
@@ -49,6 +50,10 @@ class World {
   /// True when truthOfSquare() answers; false when truth comes from the labels of rendered frames.
   virtual bool hasFlatTruth() const = 0;
 };
+
+/// @throws std::invalid_argument unless the image has pixels (sides in [1, 16384]), the focal lengths are
+///         finite and > 0, and the principal point and the pose are finite.
+void checkCamera(const Intrinsics& intrinsics, const Pose& world_from_camera);
 
 /// Opens `reef:sparse`, `reef:varied`, `reef:tuning` or a world folder (world.json).
 /// @param seed  varies a procedural reef; ignored by folders.
