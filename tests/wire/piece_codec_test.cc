@@ -100,6 +100,14 @@ TEST(PieceCodecTest, KeepsATopicWithoutWords) {
   expectPartsMakeTheWhole(topicPiece(0, 1000, 3, 1, random), 200);
 }
 
+// Weight 0 says that the topic is no more.
+TEST(PieceCodecTest, KeepsARetiredTopic) {
+  Random random(5);
+  Piece piece = topicPiece(0, 1000, 3, 1, random);
+  std::get<TopicPart>(piece.content).weight = 0;
+  expectRoundTrip(piece);
+}
+
 TEST(PieceCodecTest, KeepsExtremes) {
   Random random(6);
   Piece piece = topicPiece(0, 64, 64, 1, random);
@@ -214,7 +222,8 @@ TEST(PieceCodecTest, RefusesFaultyPieces) {
   broken(topic, [](Piece& p) { p.version.epoch = -1; });
   broken(topic, [](Piece& p) { p.part = 1; });
   broken(topic, [](Piece& p) { p.num_parts = 256; });
-  broken(topic, [](Piece& p) { std::get<TopicPart>(p.content).weight = 0; });
+  broken(topic, [](Piece& p) { std::get<TopicPart>(p.content).weight = 0; });  // yet it has words
+  broken(topic, [](Piece& p) { std::get<TopicPart>(p.content).weight = -1; });
   broken(topic, [](Piece& p) { std::get<TopicPart>(p.content).group_sizes.clear(); });
   broken(topic, [](Piece& p) { std::get<TopicPart>(p.content).group_sizes[0] = 0; });
   broken(topic, [](Piece& p) { std::get<TopicPart>(p.content).group_sizes[0] = 1 << 20; });
