@@ -30,6 +30,26 @@ std::string_view phaseName(wire::Phase phase) {
 
 }  // namespace
 
+mapping::NodeStatus statusOf(const std::string& node, const wire::Heartbeat& h, bool heard_whole) {
+  return {.name = node,
+          .phase = std::string(phaseName(h.phase)),
+          .heard_s = h.time.seconds(),
+          .observation = h.observation,
+          .num_observations = h.num_observations,
+          .topics = h.num_topics,
+          .cells = h.num_cells,
+          .bytes_sent = h.bytes_sent,
+          .budget = h.budget,
+          .queue_bytes = h.queue_bytes,
+          .ms_per_frame = h.ms_per_frame,
+          .x_m = h.x_m,
+          .y_m = h.y_m,
+          .z_m = h.z_m,
+          .rejected = h.rejected,
+          .conflicts = h.conflicts,
+          .heard_whole = heard_whole};
+}
+
 MissionState::MissionState(int32_t mission, const matching::MatcherOptions& matcher, double cell_size_m)
     : mission_(mission), matcher_(matcher), cell_size_m_(cell_size_m) {
   matching::match(matching::DescriptorSet{}, matcher_);  // wrong options are the caller's mistake: say so now
@@ -119,23 +139,7 @@ mapping::MissionView MissionState::view() const {
                             .map_digest = map_digest_,
                             .nodes = {}};
   for (const auto& [name, h] : heartbeats_) {
-    view.nodes.push_back({.name = name,
-                          .phase = std::string(phaseName(h.phase)),
-                          .heard_s = h.time.seconds(),
-                          .observation = h.observation,
-                          .num_observations = h.num_observations,
-                          .topics = h.num_topics,
-                          .cells = h.num_cells,
-                          .bytes_sent = h.bytes_sent,
-                          .budget = h.budget,
-                          .queue_bytes = h.queue_bytes,
-                          .ms_per_frame = h.ms_per_frame,
-                          .x_m = h.x_m,
-                          .y_m = h.y_m,
-                          .z_m = h.z_m,
-                          .rejected = h.rejected,
-                          .conflicts = h.conflicts,
-                          .heard_whole = holdsWhole(name)});
+    view.nodes.push_back(statusOf(name, h, holdsWhole(name)));
   }
   std::ranges::stable_sort(view.nodes, {}, [](const mapping::NodeStatus& n) {
     const auto robot = world::parseRobotId(n.name);

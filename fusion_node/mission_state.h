@@ -16,6 +16,9 @@
 
 namespace shoal::fusion_node {
 
+/// A heartbeat as the answer to `status` shows it.
+mapping::NodeStatus statusOf(const std::string& node, const wire::Heartbeat& heartbeat, bool heard_whole);
+
 /// What one process knows of a mission from all that it has heard: the replicated state, the last heartbeat
 /// of every node, and the map they add up to. Used by fusion nodes, by robots that fuse, and to read
 /// recordings. Nothing that is heard is trusted: what is bad is counted in Stats under its reason and left

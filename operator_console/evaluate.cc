@@ -8,9 +8,9 @@
 #include <stdexcept>
 
 #include <spdlog/fmt/fmt.h>
-#include <CLI/CLI.hpp>
 
 #include "fusion_node/process.h"
+#include "operator_console/command.h"
 #include "shoal/mapping/atomic_file.h"
 #include "shoal/world/world.h"
 
@@ -107,7 +107,7 @@ std::string scoreTable(const Evaluation& e) {
                              s.cells, s.classes, e.coverage * 100);
 }
 
-void addEvaluateCommand(CLI::App& app) {
+void addEvaluateCommand(CLI::App& app, Action& chosen) {
   CLI::App* command = app.add_subcommand("evaluate", "score a finished mission against its world");
   const auto flags = std::make_shared<Flags>();
   command->add_option("--run", flags->run, "folder of the mission")->required();
@@ -118,7 +118,12 @@ void addEvaluateCommand(CLI::App& app) {
   command->add_option("--sigma", flags->sigma, "least similarity of a match, in (0, 1]")
       ->capture_default_str();
   command->add_flag("--json", flags->json, "answer in JSON");
-  command->callback([flags] { evaluate(*flags); });
+  command->callback([flags, &chosen] {
+    chosen = [flags] {
+      evaluate(*flags);
+      return 0;
+    };
+  });
 }
 
 }  // namespace shoal::console

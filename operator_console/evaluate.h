@@ -10,10 +10,6 @@
 #include "operator_console/render.h"
 #include "shoal/eval/evaluation.h"
 
-namespace CLI {
-class App;
-}
-
 namespace shoal::console {
 
 /// A run scored against its world, and what is needed to draw the truth beside its map.
@@ -35,8 +31,5 @@ Evaluation evaluateRun(const std::string& dir, const world::World& world, double
 
 /// The table that people read.
 std::string scoreTable(const Evaluation& evaluation);
-
-/// evaluate --run DIR --world WORLD [--matcher all] [--json].
-void addEvaluateCommand(CLI::App& app);
 
 }  // namespace shoal::console

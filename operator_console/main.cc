@@ -22,7 +22,8 @@ int main(int argc, char** argv) {
   app.add_option("--log-level", log_level, "trace, debug, info, warn, error or off")->capture_default_str();
   app.set_config("--config", "", "mission.toml: any of these flags");
   app.config_formatter(std::make_shared<console::MissionFile>(app));
-  app.allow_config_extras(true);  // flags of the other programs may stand there too
+  app.allow_config_extras(
+      CLI::config_extras_mode::ignore_all);  // flags of the other programs may stand there too
   app.require_subcommand(1);
   app.fallthrough();
   console::addLaunchCommand(app, chosen);

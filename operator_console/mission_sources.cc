@@ -25,7 +25,9 @@ uint64_t digestFrom(const Json& text) { return std::stoull(text.get<std::string>
 mapping::MissionView viewOfNode(const std::string& state_dir) {
   const Json status = fusion_node::askNode(state_dir, {{"query", "status"}});
   const Json map = fusion_node::askNode(state_dir, {{"query", "map"}});
-  mapping::MissionView view{.mission = status.at("mission_id"), .cell_size_m = map.at("cell_size_m")};
+  mapping::MissionView view;
+  view.mission = status.at("mission_id");
+  view.cell_size_m = map.at("cell_size_m");
   view.state_digest = digestFrom(status.at("digest").at("state"));
   view.map_digest = digestFrom(status.at("digest").at("map"));
   for (const Json& node : status.at("nodes")) view.nodes.push_back(mapping::nodeFromJson(node));

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "operator_console/question_commands.h"
-
 #include <cstdio>
 #include <iostream>
 #include <memory>
@@ -8,9 +6,9 @@
 #include <stdexcept>
 
 #include <spdlog/fmt/fmt.h>
-#include <CLI/CLI.hpp>
 
 #include "fusion_node/process.h"
+#include "operator_console/command.h"
 #include "operator_console/mission_sources.h"
 #include "operator_console/render.h"
 #include "shoal/mapping/atomic_file.h"
@@ -138,12 +136,17 @@ void exportMap(Question& q) {
 
 }  // namespace
 
-void addQuestionCommands(CLI::App& app) {
-  const auto add = [&app](const char* name, const char* what, void (*run)(Question&)) {
+void addQuestionCommands(CLI::App& app, Action& chosen) {
+  const auto add = [&app, &chosen](const char* name, const char* what, void (*run)(Question&)) {
     CLI::App* command = app.add_subcommand(name, what);
     const auto q = std::make_shared<Question>();
     addWhere(*command, *q);
-    command->callback([q, run] { run(*q); });
+    command->callback([q, run, &chosen] {
+      chosen = [q, run] {
+        run(*q);
+        return 0;
+      };
+    });
     return std::pair(command, q);
   };
   add("status", "how every node of a mission is doing", status);

@@ -38,6 +38,9 @@ comms::TrafficClass trafficOf(mapping::PieceKind kind) {
   return comms::TrafficClass::kCertainty;
 }
 
+// Bytes of a piece's datagram that are no content: headers, channel, fixed fields.
+constexpr size_t kPieceOverheadBytes = 110;
+
 std::string queueKey(const mapping::PieceKey& key, int32_t part) {
   std::string text = std::to_string(static_cast<int>(key.kind));
   for (const int32_t i : key.index) text += '/' + std::to_string(i);
@@ -110,7 +113,10 @@ void Agent::takeIn(const world::Observation& observation) {
 void Agent::publish(world::Timestamp now) {
   for (const mapping::Piece& whole : changes_.update(belief_)) {
     const std::string channel = comms::channelName(name_, wire::channelKind(wire::kindOf(whole)));
-    const auto parts = wire::cutToFit(whole, wire::maxPayload(channel.size()));
+    // Under a thin budget small datagrams use more of it: comms/budget.h.
+    const size_t best = comms::efficientDatagram(options_.budget, kPieceOverheadBytes);
+    const size_t most = best - comms::wireSize(channel.size(), 0);
+    const auto parts = wire::cutToFit(whole, std::min(wire::maxPayload(channel.size()), most));
     for (const mapping::Piece& part : parts) {
       own_.apply(part);
       if (options_.fuse) others_.apply(part);

@@ -76,8 +76,9 @@ Score score(const std::vector<std::pair<world::CellIndex, int>>& labels, const T
   result.labels = static_cast<int>(all_labels.size());
   result.classes = static_cast<int>(std::set<int>(expected.begin(), expected.end()).size());
   if (found.empty()) return result;
-  result.ami = adjustedMutualInformation(found, expected);
-  result.nmi = normalizedMutualInformation(found, expected);
+  const Contingency table = contingency(found, expected);
+  result.ami = ami(table);
+  result.nmi = nmi(table);
   return result;
 }
 

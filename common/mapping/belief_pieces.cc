@@ -6,10 +6,19 @@
 
 namespace shoal::mapping {
 
+namespace {
+
+std::vector<int32_t> groupSizes(const LocalBelief& belief) {
+  std::vector<int32_t> sizes;
+  for (const world::WordGroup& group : belief.groups) sizes.push_back(group.size);
+  return sizes;
+}
+
+}  // namespace
+
 std::vector<Piece> wholePieces(const LocalBelief& belief) {
   std::vector<Piece> pieces;
-  std::vector<int32_t> group_sizes;
-  for (const world::WordGroup& group : belief.groups) group_sizes.push_back(group.size);
+  const std::vector<int32_t> group_sizes = groupSizes(belief);
   for (const BelievedTopic& topic : belief.topics) {
     pieces.push_back({.key = {belief.robot, PieceKind::kTopic, {number(topic.id), 0, 0}},
                       .version = belief.version,
@@ -47,11 +56,12 @@ std::vector<Piece> BeliefChanges::update(const LocalBelief& belief) {
     now.emplace(piece.key, hash);
     if (before == content_hash_.end() || before->second != hash) changed.push_back(std::move(piece));
   }
+  const std::vector<int32_t> group_sizes = groupSizes(belief);
   for (const auto& [key, hash] : content_hash_) {
     if (key.kind != PieceKind::kTopic || now.contains(key)) continue;
     now.emplace(key, 0);
     if (hash == 0) continue;  // retired already
-    changed.push_back({.key = key, .version = belief.version, .content = TopicPart{}});
+    changed.push_back({.key = key, .version = belief.version, .content = TopicPart{{0}, 0, group_sizes, {}}});
   }
   std::ranges::sort(changed, {}, &Piece::key);
   content_hash_ = std::move(now);

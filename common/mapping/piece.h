@@ -34,7 +34,7 @@ constexpr std::array<int32_t, 3> brickOf(const world::CellIndex& c) { return {c.
 /// words and is usable alone. Weights are quantised integers, see quantize().
 struct TopicPart {
   world::Timestamp created;          ///< mission time at which the topic was opened
-  int64_t weight = 0;                ///< words assigned to the whole topic; 0 = retired, then no words
+  int64_t weight = 0;                ///< words assigned to the whole topic; 0 = retired: no words
   std::vector<int32_t> group_sizes;  ///< sizes of the word groups, in id order; their sum is the vocabulary
   std::vector<world::WordCount> words;  ///< this part's words, ascending by word; counts quantised, > 0
   bool operator==(const TopicPart&) const = default;

@@ -38,7 +38,8 @@ std::string faultOf(const TopicPart& topic, const mapping::PieceKey& key) {
   if (key.index[0] < 0 || key.index[0] > world::kMaxTopicId) return "topic ids lie in [0, 9999]";
   if (key.index[1] != 0 || key.index[2] != 0) return "a topic's index is {id, 0, 0}";
   if (!isTime(topic.created)) return "the creation time is out of range";
-  if (topic.weight <= 0 || topic.weight > kMaxTimeUs) return "the weight must be > 0";
+  if (topic.weight < 0 || topic.weight > kMaxTimeUs) return "the weight is negative";
+  if (topic.weight == 0 && !topic.words.empty()) return "a retired topic (weight 0) has no words";
   if (topic.group_sizes.empty() || topic.group_sizes.size() > kMaxWordGroups) return "1 to 64 word groups";
   int64_t vocabulary = 0;
   for (const int32_t size : topic.group_sizes) {

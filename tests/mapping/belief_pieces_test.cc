@@ -58,7 +58,7 @@ TEST(BeliefChangesTest, SaysOnceThatATopicIsGone) {
   next.topics.pop_back();
   const auto changed = changes.update(next);
   ASSERT_EQ(changed.size(), 1u);
-  EXPECT_EQ(std::get<TopicPart>(changed[0].content), TopicPart{});
+  EXPECT_EQ(std::get<TopicPart>(changed[0].content), (TopicPart{{0}, 0, {10}, {}}));
   next.version.observation = 2;
   EXPECT_TRUE(changes.update(next).empty());
 }
