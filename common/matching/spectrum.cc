@@ -111,7 +111,7 @@ std::vector<std::vector<int>> connectedComponents(const Sparse& matrix) {
     for (size_t next = 0; next < component.size(); ++next) {
       for (Sparse::InnerIterator it(matrix, component[next]); it; ++it) {
         const auto v = static_cast<size_t>(it.row());
-        if (seen[v] || it.value() == 0.0) continue;
+        if (seen[v]) continue;
         seen[v] = true;
         component.push_back(static_cast<int>(v));
       }

@@ -37,7 +37,8 @@ struct SmallEnd {
 /// of unit weight and single vertices by closed form. Memory O(nnz + Σ s·c). Never n×n.
 SmallEnd smallEnd(const Eigen::SparseMatrix<double>& laplacian, double bound, int at_least);
 
-/// The vertex sets of the connected components of a symmetric matrix, by lowest vertex, each ascending.
+/// The vertex sets of the connected components of a symmetric matrix, by lowest vertex, each ascending. Every
+/// stored entry joins.
 std::vector<std::vector<int>> connectedComponents(const Eigen::SparseMatrix<double>& matrix);
 
 }  // namespace shoal::matching

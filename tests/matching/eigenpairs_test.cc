@@ -57,6 +57,17 @@ TEST(KrylovEigenpairsTest, AgreeWithTheDenseSolverOnNoisyGraphs) {
   }
 }
 
+// A ring of 300: the eigenvalues at its end, 1 and twice 1 - 1.5e-4, are so close that the first subspace
+// sees nothing above a bound between them.
+TEST(KrylovEigenpairsTest, DecideWhereTheFirstLookSeesNothing) {
+  std::vector<Edge> edges{{0, 299}};
+  for (int v = 0; v + 1 < 300; ++v) edges.push_back({v, v + 1});
+  const auto krylov = krylovEigenpairsAbove(complement(300, edges), 1.0 - 7e-5);
+  ASSERT_TRUE(krylov.has_value());
+  ASSERT_EQ(krylov->values.size(), 1);
+  EXPECT_NEAR(krylov->values[0], 1.0, 1e-12);
+}
+
 // Twelve equal cliques on one hub: an eigenvalue above .5 occurs eleven times, and a Krylov space sees it
 // once.
 TEST(KrylovEigenpairsTest, FindEveryCopyOfAMultipleEigenvalue) {
