@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What people type wrong, and what the programs say then.
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <gtest/gtest.h>
+
+namespace {
+
+struct Outcome {
+  int exit_code = -1;
+  std::string output;  // stdout and stderr
+};
+
+Outcome console(const std::string& arguments) {
+  const std::string command = "env -u SHOAL_LCM_URL '" CONSOLE "' " + arguments + " 2>&1 </dev/null";
+  std::FILE* pipe = popen(command.c_str(), "r");
+  Outcome outcome;
+  std::array<char, 4096> buffer;
+  for (size_t n; (n = std::fread(buffer.data(), 1, buffer.size(), pipe)) > 0;)
+    outcome.output.append(buffer.data(), n);
+  const int status = pclose(pipe);
+  if (WIFEXITED(status)) outcome.exit_code = WEXITSTATUS(status);
+  return outcome;
+}
+
+void expectRefusal(const std::string& arguments, const std::string& said) {
+  const Outcome outcome = console(arguments);
+  EXPECT_EQ(outcome.exit_code, 2) << arguments;
+  EXPECT_NE(outcome.output.find(said), std::string::npos) << arguments << "\nsaid: " << outcome.output;
+}
+
+std::string temporaryFolder() {
+  std::string pattern = testing::TempDir() + "console_XXXXXX";
+  return mkdtemp(pattern.data());
+}
+
+TEST(ConsoleTest, SaysItsVersionWithTheCommit) {
+  const Outcome outcome = console("--version");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(outcome.output.rfind("operator_console 0.", 0), 0u) << outcome.output;
+  EXPECT_NE(outcome.output.find(" ("), std::string::npos);
+}
+
+TEST(ConsoleTest, HelpIsNoMistakeAndNothingIs) {
+  EXPECT_EQ(console("--help").exit_code, 0);
+  EXPECT_EQ(console("launch --help").exit_code, 0);
+  EXPECT_EQ(console("").exit_code, 2);
+  EXPECT_EQ(console("lunch").exit_code, 2);
+  EXPECT_EQ(console("--log-level loud launch --world reef:sparse --out x").exit_code, 2);
+}
+
+TEST(ConsoleTest, RefusesByNameWhatIsNotBuiltYet) {
+  for (const std::string name : {"replay", "verify", "reproduce", "serve", "spy", "doctor", "area", "why",
+                                 "name", "link", "unlink", "exclude", "undo", "tune"}) {
+    expectRefusal(name, name + " is not built yet");
+    expectRefusal(name + " 7 --what ever", name + " is not built yet");
+  }
+}
+
+TEST(LaunchTest, NamesTheOptionThatIsWrong) {
+  const std::string launch = "launch --out " + temporaryFolder() + "/run ";
+  const std::string fly = launch + "--world reef:sparse ";
+  expectRefusal(launch, "--world is missing");
+  expectRefusal("launch --world reef:sparse", "--out is missing");
+  expectRefusal(fly + "--robots 0", "--robots must lie in 1 to 256, got 0");
+  expectRefusal(fly + "--robots many", "many");
+  expectRefusal(fly + "--observations -1", "--observations");
+  expectRefusal(fly + "--budget -5", "--budget");
+  expectRefusal(fly + "--rate fast", "\"fast\"");
+  expectRefusal(fly + "--matcher nearest", "nearest");
+  expectRefusal(fly + "--similarity looks", "looks");
+  expectRefusal(fly + "--sigma 1.5", "1.5");
+  expectRefusal(fly + "--cell-size-m -1", "--cell-size-m");
+  expectRefusal(fly + "--frame-period-s 0", "--frame-period-s");
+  expectRefusal(fly + "--lcm-url tcp://1.2.3.4", "udpm://");
+  expectRefusal(fly + "--no-such-flag", "--no-such-flag");
+  expectRefusal(launch + "--world reef:purple", "reef:purple");
+  expectRefusal(launch + "--world /no/such/folder", "/no/such/folder");
+}
+
+TEST(LaunchTest, RefusesByNameWhatIsNotBuiltYet) {
+  const std::string fly = "launch --world reef:sparse --out " + temporaryFolder() + "/run ";
+  for (const std::string link : {"mesh", "acoustic", "satellite", "my_link.toml"}) {
+    expectRefusal(fly + "--link " + link, "--link " + link);
+  }
+  expectRefusal(fly + "--kill-plan plan.toml", "--kill-plan is not built yet");
+  expectRefusal(fly + "--matcher shoal", "--matcher shoal is not built yet");
+  expectRefusal(fly + "--profile best", "--profile best is not built yet");
+  expectRefusal(fly + "--sigma auto", "not built yet");
+}
+
+TEST(LaunchTest, KeepsAFinishedMission) {
+  const std::string folder = temporaryFolder();
+  std::ofstream(folder + "/summary.json") << "{}";
+  expectRefusal("launch --world reef:sparse --out " + folder, "--overwrite");
+  EXPECT_TRUE(std::filesystem::exists(folder + "/summary.json"));
+}
+
+TEST(LaunchTest, ReadsFlagsFromMissionToml) {
+  const std::string folder = temporaryFolder();
+  const std::string launch = "launch --out " + folder + "/run --config " + folder + "/mission.toml";
+  std::ofstream(folder + "/mission.toml") << "world = \"reef:sparse\"\nrobots = 999\ncheckpoint = \"x\"\n";
+  expectRefusal(launch, "--robots must lie in 1 to 256, got 999");
+  expectRefusal(launch + " --robots 998", "got 998");  // the command line beats the file
+  std::ofstream(folder + "/mission.toml") << "[launch]\nworld = \"reef:sparse\"\nlink = \"mesh\"\n";
+  expectRefusal(launch, "--link mesh is not built yet");
+  expectRefusal("launch --config " + folder + "/nothing.toml", "nothing.toml");
+}
+
+}  // namespace
