@@ -16,6 +16,7 @@
 #include "shoal/wire/labels_codec.h"
 #include "shoal/wire/map_codec.h"
 #include "shoal/wire/matches_codec.h"
+#include "shoal/wire/message_kind.h"
 
 namespace shoal::fusion_node {
 namespace {
@@ -30,6 +31,7 @@ comms::SenderOptions senderOptions(int64_t budget, std::function<comms::Packet(i
   comms::SenderOptions options;
   options.bytes_per_s = budget;
   options.make_heartbeat = std::move(make_heartbeat);
+  options.stamp = [](comms::Packet& packet, int64_t now_us) { wire::stampTime(packet.bytes, {now_us}); };
   return options;
 }
 
@@ -69,15 +71,19 @@ void Node::turn(int timeout_ms) {
         sender_.offer(comms::TrafficClass::kMatches, channel + "/" + std::to_string(i),
                       {channel, std::move(chunks[i])});
       }
+      size_t& offered = num_chunks_[channel];
+      for (size_t stale = chunks.size(); stale < offered; ++stale) {
+        sender_.forget(channel + "/" + std::to_string(stale));
+      }
+      offered = chunks.size();
     };
-    const world::Timestamp now{clock_.now()};
     const auto limit = [this](std::string_view kind) {
       return wire::maxPayload(comms::channelName(options_.name, kind).size());
     };
     offer("MATCHES", wire::encodeMatches(state_.map().correspondences, state_.mapDigest(), options_.mission,
-                                         now, limit("MATCHES")));
-    offer("LABELS", wire::encodeLabels(state_.map().labels, state_.mapDigest(), options_.mission, now,
-                                       limit("LABELS")));
+                                         world::Timestamp{}, limit("MATCHES")));
+    offer("LABELS", wire::encodeLabels(state_.map().labels, state_.mapDigest(), options_.mission,
+                                       world::Timestamp{}, limit("LABELS")));
   }
   if (state_.mapDigest() != published_digest_ && wall - published_at_ms_ >= kPublishPeriodMs) publishMap();
   sender_.pump(clock_.now());
@@ -119,7 +125,8 @@ comms::Packet Node::heartbeat(int64_t now_us) {
     h.class_bytes[i] = static_cast<int64_t>(sender_.stats().sent[i].bytes);
   }
   h.roster = state_.roster();
-  return {comms::channelName(options_.name, "HEARTBEAT"), wire::encode(h)};
+  const std::string channel = comms::channelName(options_.name, "HEARTBEAT");
+  return {channel, wire::encode(h, wire::maxPayload(channel.size()))};
 }
 
 nlohmann::ordered_json Node::answer(const Json& question) {

@@ -55,6 +55,7 @@ class Node {
   comms::MissionClock clock_;
   comms::Sender sender_;
   std::optional<QueryServer> queries_;
+  std::map<std::string, size_t> num_chunks_;  // in the send queue, by channel
   uint64_t published_digest_ = 0;
   int64_t fused_at_ms_ = 0, published_at_ms_ = 0;
 };

@@ -67,6 +67,7 @@ Agent::Agent(const AgentOptions& options, world::ObservationSource& source, comm
       sender_(bus, nullptr, [&] {
         comms::SenderOptions sender;
         sender.bytes_per_s = options.budget;
+        sender.stamp = [](comms::Packet& packet, int64_t now_us) { wire::stampTime(packet.bytes, {now_us}); };
         sender.make_heartbeat = [this](int64_t now_us) { return heartbeat(now_us); };
         return sender;
       }()) {}
@@ -102,7 +103,7 @@ void Agent::takeIn(const world::Observation& observation) {
   explorer_.observe(observation);
   belief_ = explorer_.belief();
   path_.push_back({observation.time, observation.world_from_camera});
-  publish(observation.time);
+  publish();
   const robot::StageTimes& t = explorer_.lastTimes();
   const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
   total_ms_ += took.count();
@@ -110,7 +111,7 @@ void Agent::takeIn(const world::Observation& observation) {
                 observation.number, t.words_ms, t.topics_ms, t.belief_ms, took.count() - t.total());
 }
 
-void Agent::publish(world::Timestamp now) {
+void Agent::publish() {
   for (const mapping::Piece& whole : changes_.update(belief_)) {
     const std::string channel = comms::channelName(name_, wire::channelKind(wire::kindOf(whole)));
     // Under a thin budget small datagrams use more of it: comms/budget.h.
@@ -121,7 +122,7 @@ void Agent::publish(world::Timestamp now) {
       own_.apply(part);
       if (options_.fuse) others_.apply(part);
       sender_.offer(trafficOf(part.key.kind), queueKey(part.key, part.part),
-                    {channel, wire::encode(part, options_.mission, now)});
+                    {channel, wire::encode(part, options_.mission, world::Timestamp{})});
     }
     int32_t& offered = num_parts_[whole.key];
     for (auto stale = static_cast<int32_t>(parts.size()); stale < offered; ++stale) {
@@ -238,7 +239,8 @@ comms::Packet Agent::heartbeat(int64_t now_us) {
   for (size_t i = 0; i < comms::kNumTrafficClasses; ++i) {
     h.class_bytes[i] = static_cast<int64_t>(sender_.stats().sent[i].bytes);
   }
-  return {comms::channelName(name_, "HEARTBEAT"), wire::encode(h)};
+  const std::string channel = comms::channelName(name_, "HEARTBEAT");
+  return {channel, wire::encode(h, wire::maxPayload(channel.size()))};
 }
 
 void runAlone(const AgentOptions& options, world::ObservationSource& source) {

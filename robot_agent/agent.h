@@ -45,7 +45,7 @@ class Agent {
   void fly();
   void linger();
   void takeIn(const world::Observation& observation);
-  void publish(world::Timestamp now);
+  void publish();
   void passTimeUntil(int64_t to_us);
   void listen(int timeout_ms);
   bool isHeard() const;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "shoal/wire/message_kind.h"
 
+#include "shoal/wire/checksum.h"
+
 #include <shoal/brick_t.hpp>
 #include <shoal/certainty_t.hpp>
 #include <shoal/heartbeat_t.hpp>
@@ -20,6 +22,37 @@ std::optional<MessageKind> parseChannelKind(std::string_view text) {
   }
   return std::nullopt;
 }
+
+namespace {
+
+template <typename Message>
+size_t fixedBytes() {
+  return static_cast<size_t>(Message{}.getEncodedSize());
+}
+
+// Bytes before the payload, fingerprint included.
+size_t fixedBytesOf(MessageKind kind) {
+  switch (kind) {
+    case MessageKind::kHeartbeat:
+      return fixedBytes<heartbeat_t>();
+    case MessageKind::kTopics:
+      return fixedBytes<topics_t>();
+    case MessageKind::kBrick:
+      return fixedBytes<brick_t>();
+    case MessageKind::kCertainty:
+      return fixedBytes<certainty_t>();
+    case MessageKind::kMatches:
+      return fixedBytes<matches_t>();
+    case MessageKind::kLabels:
+      return fixedBytes<labels_t>();
+    case MessageKind::kMap:
+      return fixedBytes<map_t>();
+  }
+  SHOAL_DEMAND(false);
+  return 0;
+}
+
+}  // namespace
 
 int64_t fingerprintOf(MessageKind kind) {
   switch (kind) {
@@ -57,6 +90,13 @@ Result<Header> peek(std::span<const uint8_t> bytes) {
   const auto us = static_cast<int64_t>(bigEndian(bytes.subspan(8, 8)));
   if (us < 0 || us > kMaxTimeUs) return DecodeError::kBadField;
   return Header{*kind, {us}, static_cast<int32_t>(bigEndian(bytes.subspan(16, 4)))};
+}
+
+void stampTime(std::span<uint8_t> message, world::Timestamp time) {
+  const auto header = peek(message);
+  SHOAL_DEMAND(header.ok() && time.us >= 0 && time.us <= kMaxTimeUs);
+  for (size_t i = 0; i < 8; ++i) message[8 + i] = static_cast<uint8_t>(time.us >> (56 - 8 * i));
+  writeChecksum(message, fixedBytesOf(header->kind));
 }
 
 }  // namespace shoal::wire
