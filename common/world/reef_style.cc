@@ -74,7 +74,7 @@ ReefStyle tuning() {
   style.ground_width_m = 24.0f;
   Terrain terrain;
   terrain.ground = {0.12f, -0.08f, -0.04f, -0.28f};
-  terrain.shade = 0.35f;
+  terrain.shade = 0.22f;
   terrain.growths = {{3, .10f, .9f, 4.4f, .38f, .40f, 3},
                      {4, .08f, .7f, 3.6f, .40f, .16f, 7},
                      {5, .08f, .9f, 3.8f, .24f, .34f, 6}};

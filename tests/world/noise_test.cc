@@ -77,6 +77,16 @@ TEST(TextureTileTest, RepeatsSeamlesslyAndStaysInRange) {
   }
 }
 
+TEST(TextureTileTest, IsBilinearBetweenTexels) {
+  const TextureTile tile(Texture::kRubble, 3);
+  for (int i = 0; i < 200; ++i) {
+    const float x = 0.04f * static_cast<float>(i), y = 0.04f * static_cast<float>(3 * i);
+    const auto at = [&](float dx, float dy) { return tile.at(x + dx, y + dy).brightness; };
+    EXPECT_NEAR(at(0.02f, 0), 0.5f * (at(0, 0) + at(0.04f, 0)), 0.01f);
+    EXPECT_NEAR(at(0, 0.02f), 0.5f * (at(0, 0) + at(0, 0.04f)), 0.01f);
+  }
+}
+
 TEST(CoarseMapTest, IsBilinearBetweenNodesAndConstantBeyond) {
   const CoarseMap<2> map(4, 2.0f, [](float x, float y) { return std::array{3 * x + y, x * y}; });
   EXPECT_FLOAT_EQ(map.at(1.0f, 5.0f)[0], 8.0f);

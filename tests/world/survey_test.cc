@@ -142,6 +142,11 @@ TEST(SurveyPathTest, CoversWithThirtyPercentOverlapWhenObservationsAreUnlimited)
   }
 }
 
+// Footprints of 32 m x 24 m over 100 m x 24 m: five advance by 17 m, four would by 22.7 m, more than 70 %.
+TEST(SurveyPathTest, AdvancesByAtMostSeventyPercentOfAFrame) {
+  EXPECT_EQ(surveyPath(meadow(1000, 240, 0.1), {}, 0).size(), 5u);
+}
+
 TEST(SurveyPathTest, StringsTheTeamTogetherForASingleRobot) {
   const OrthoWorld world = meadow(1000, 800, 0.2);
   SurveyOptions options;
