@@ -41,7 +41,7 @@ int main(int argc, char** argv) {
                "fusion_node"};
   app.set_version_flag("--version", std::string("fusion_node ") + version() + " (" + commit() + ")");
   app.set_config("--config", "", "mission.toml: any of these flags");
-  app.allow_config_extras(true);
+  app.allow_config_extras(CLI::config_extras_mode::ignore_all);  // the file serves other programs too
   app.add_option("--node", options.name, "name of this node, capitals and digits")->capture_default_str();
   app.add_option("--lcm-url", url, "multicast group of the link")
       ->envname("SHOAL_LCM_URL")

@@ -64,13 +64,17 @@ int32_t newMissionId() {
   return static_cast<int32_t>(hashCombine(now, static_cast<uint64_t>(getpid())) % 0x7fffffffu) + 1;
 }
 
-// Makes the folder ready: without the files of a mission that was there before.
-void prepareFolder(const LaunchOptions& options) {
+void refuseFinishedMission(const LaunchOptions& options) {
   const fs::path out = options.out;
   if (fs::exists(out / "summary.json") && !options.overwrite) {
     throw std::invalid_argument("--out " + options.out +
                                 " holds a finished mission; name another folder, or add --overwrite");
   }
+}
+
+// Makes the folder ready: without the files of a mission that was there before.
+void prepareFolder(const LaunchOptions& options) {
+  const fs::path out = options.out;
   if (fs::exists(out / "logs" / "OPERATOR.log")) {
     for (const std::string_view name : {"robots", "single", "logs", "state", "global_map.csv",
                                         "global_map.png", "labels.csv", "summary.json", "mission.lcmlog"}) {
@@ -242,6 +246,7 @@ void Mission::stopLogger() {
 int Mission::run(bool url_was_given) {
   try {
     if (url_was_given) refuseOtherMissions();
+    prepareFolder(options_);
     started_ = Clock::now();
     startAll();
     std::vector<std::string> lacking = settle();
@@ -285,7 +290,7 @@ int launch(LaunchOptions options) {
   check(options);
   options = completed(std::move(options));
   options.out = fs::absolute(options.out).lexically_normal();
-  prepareFolder(options);
+  refuseFinishedMission(options);
   if (options.mission == 0) options.mission = newMissionId();
   const bool url_was_given = !options.lcm_url.empty();
   if (!url_was_given) options.lcm_url = comms::chooseFreeUrl(static_cast<uint64_t>(options.mission));

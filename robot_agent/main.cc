@@ -66,7 +66,7 @@ int main(int argc, char** argv) {
                "robot_agent"};
   app.set_version_flag("--version", std::string("robot_agent ") + version() + " (" + commit() + ")");
   app.set_config("--config", "", "mission.toml: any of these flags");
-  app.allow_config_extras(true);
+  app.allow_config_extras(CLI::config_extras_mode::ignore_all);  // the file serves other programs too
   app.add_option("--robot", f.robot, "R00, R01, ...")->capture_default_str();
   app.add_option("--source", f.source, "reef:sparse, reef:varied, reef:tuning, or a world folder")
       ->required();

@@ -18,9 +18,7 @@ constexpr uint64_t mix64(uint64_t x) {
 }
 
 /// Folds `value` into a running 64-bit hash. Order matters. Not cryptographic.
-constexpr uint64_t hashCombine(uint64_t hash, uint64_t value) {
-  return mix64(hash ^ mix64(value));
-}
+constexpr uint64_t hashCombine(uint64_t hash, uint64_t value) { return mix64(hash ^ mix64(value)); }
 
 /// A counter-based generator: the n-th number is a pure function of the key and n, so that no result
 /// depends on which thread, or in which order, numbers are drawn.

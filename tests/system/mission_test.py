@@ -1,0 +1,312 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Whole missions with real processes on a private network: files, determinism, questions, errors.
+
+Usage: mission_test.py BIN_DIR DOCS_DIR [unittest arguments], inside a network namespace of its own.
+"""
+import csv
+import glob
+import json
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+import jsonschema
+
+BIN, DOCS = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
+CONSOLE = os.path.join(BIN, "operator_console")
+SIZE = ["--robots", "3", "--observations", "6", "--seed", "7"]
+
+
+def run(*arguments, expect=0, timeout=240):
+    done = subprocess.run(arguments, capture_output=True, text=True, timeout=timeout)
+    if done.returncode != expect:
+        raise AssertionError(f"{' '.join(arguments)}: exit {done.returncode}, not {expect}\n{done.stdout}\n{done.stderr}")
+    return done
+
+
+def launch(out, *more, world="reef:tuning"):
+    return run(CONSOLE, "launch", "--world", world, *SIZE, "--out", out, *more)
+
+
+def read(path):
+    with open(path, "rb") as file:
+        return file.read()
+
+
+def check_schema(name, value):
+    with open(os.path.join(DOCS, "schemas", name + ".schema.json"), encoding="utf-8") as file:
+        jsonschema.validate(value, json.load(file))
+
+
+def ask(*arguments):
+    return json.loads(run(CONSOLE, *arguments, "--json").stdout)
+
+
+class Mission(unittest.TestCase):
+    """One recorded mission that most tests look at."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.top = tempfile.mkdtemp(prefix="shoal_mission_")
+        cls.a = os.path.join(cls.top, "a")
+        launch(cls.a, "--rate", "max", "--single", "--record")
+        with open(os.path.join(cls.a, "summary.json"), encoding="utf-8") as file:
+            cls.summary = json.load(file)
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.top)
+
+    def check_csv(self, path, patterns):
+        text = read(os.path.join(self.a, path)).decode()
+        self.assertNotIn("\r", text)
+        self.assertTrue(text.endswith("\n"))
+        rows = list(csv.reader(text.splitlines()))
+        self.assertEqual(rows[0], list(patterns))
+        self.assertGreater(len(rows), 1, path)
+        for row in rows[1:]:
+            self.assertEqual(len(row), len(patterns), row)
+            for field, pattern in zip(row, patterns.values()):
+                self.assertRegex(field, "^" + pattern + "$", path)
+        return rows[1:]
+
+    METRES, CERTAINTY, ROBOT = r"-?\d+\.\d{3}", r"[01]\.\d{4}", r"R\d\d+"
+
+    def test_every_file_has_its_columns(self):
+        m, c = self.METRES, self.CERTAINTY
+        cells = self.check_csv("global_map.csv", {"x_m": m, "y_m": m, "z_m": m, "label": r"\d+", "robot": self.ROBOT,
+                                                  "seen_s": m, "certainty": c})
+        places = [tuple(float(v) for v in row[:3]) for row in cells]
+        self.assertEqual(places, sorted(set(places)), "rows are not in canonical order")
+        labels = self.check_csv("labels.csv", {"label": r"\d+", "name": ".*", "cells": r"\d+", "area_m2": m,
+                                               "robots": self.ROBOT + "(;" + self.ROBOT + ")*", "first_seen_s": m})
+        counted = {row[0]: int(row[2]) for row in labels}
+        for label in counted:
+            self.assertEqual(counted[label], sum(row[3] == label for row in cells))
+        self.assertEqual(sum(counted.values()), len(cells))
+        for folder in ["robots/R00", "robots/R01", "robots/R02", "single"]:
+            self.check_csv(folder + "/map.csv", {"x_m": m, "y_m": m, "z_m": m, "topic": r"\d+", "seen_s": m, "certainty": c})
+            topics = json.loads(read(os.path.join(self.a, folder, "topics.json")))
+            check_schema("topics", topics)
+            for topic in topics["topics"]:
+                self.assertEqual(topic["weight"], sum(topic["words"].values()))
+                self.assertTrue(all(0 <= int(word) < topics["vocabulary"] for word in topic["words"]))
+            poses = read(os.path.join(self.a, folder, "poses.txt")).decode().splitlines()
+            self.assertEqual(len(poses), 18 if folder == "single" else 6)
+            self.assertTrue(all(len(line.split()) == 8 for line in poses))
+        for name in ["R00", "R01", "R02", "OPERATOR", "single"]:
+            for line in read(os.path.join(self.a, "logs", name + ".log")).decode().splitlines():
+                self.assertRegex(line, r"^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{3} \w+ " + name + ": ")
+        self.assertEqual(read(os.path.join(self.a, "global_map.png"))[:8], b"\x89PNG\r\n\x1a\n")
+
+    def test_the_summary_says_what_happened(self):
+        s = self.summary
+        check_schema("summary", s)
+        self.assertEqual((s["seed"], s["world"], s["robots"], s["observations"]), (7, "reef:tuning", ["R00", "R01", "R02"], 6))
+        self.assertTrue(s["converged"])
+        self.assertLessEqual(s["worst_window"]["bytes"], max(2000 * max(1, s["worst_window"]["length_s"]), 1428) + 1)
+        cells = len(read(os.path.join(self.a, "global_map.csv")).splitlines()) - 1
+        self.assertEqual(s["cells"], cells)
+        for robot in s["robots"]:
+            self.assertGreater(s["bytes"][robot]["topics"], 0)
+            self.assertGreater(s["bytes"][robot]["bricks"], 0)
+
+    def test_the_same_seed_gives_the_same_bytes_at_any_rate(self):
+        b = os.path.join(self.top, "b")
+        launch(b, "--rate", "10", "--budget", "0")
+        for path in ["global_map.csv", "labels.csv"] + [
+                f"robots/R0{r}/{name}" for r in range(3) for name in ("map.csv", "topics.json", "poses.txt")]:
+            self.assertEqual(read(os.path.join(self.a, path)), read(os.path.join(b, path)), path)
+
+    def test_another_seed_gives_another_map(self):
+        c = os.path.join(self.top, "c")
+        run(CONSOLE, "launch", "--world", "reef:tuning", *SIZE[:-1], "8", "--out", c)
+        self.assertNotEqual(read(os.path.join(self.a, "global_map.csv")), read(os.path.join(c, "global_map.csv")))
+
+    def test_evaluate_agrees_with_the_summary(self):
+        scores = ask("evaluate", "--run", self.a, "--world", "reef:tuning")
+        check_schema("evaluate", scores)
+        self.assertEqual(scores, self.summary["scores"])
+        self.assertEqual(set(scores["matchers"]), {"id", "hungarian", "clear"})
+        self.assertEqual(set(ask("evaluate", "--run", self.a, "--world", "reef:tuning", "--matcher", "id")["matchers"]), {"id"})
+
+    def test_run_and_recording_give_the_same_answers(self):
+        log = os.path.join(self.a, "mission.lcmlog")
+        of_run, of_log = ask("status", "--run", self.a), ask("status", "--log", log)
+        check_schema("status", of_run)
+        check_schema("status", of_log)
+        self.assertEqual(of_run["digest"], of_log["digest"])
+        self.assertEqual(of_run["cells"], of_log["cells"])
+        labels = ask("labels", "--run", self.a)
+        check_schema("labels", labels)
+        self.assertEqual(labels, ask("labels", "--log", log))
+        first = read(os.path.join(self.a, "global_map.csv")).decode().splitlines()[1].split(",")
+        at = ask("at", first[0], first[1], "--run", self.a)
+        check_schema("at", at)
+        self.assertIn(int(first[3]), [cell["label"] for cell in at["cells"]])
+        # A recording holds certainties in steps of 1/63, and so does the map: everything is equal.
+        self.assertEqual(at["cells"], ask("at", first[0], first[1], "--log", log)["cells"])
+        self.assertEqual(ask("at", "1e5", "1e5", "--run", self.a)["cells"], [])
+
+    def test_a_recording_exports_the_very_map(self):
+        out = os.path.join(self.top, "from_log.csv")
+        run(CONSOLE, "export", "--format", "csv", "--out", out, "--log", os.path.join(self.a, "mission.lcmlog"))
+        self.assertEqual(read(out), read(os.path.join(self.a, "global_map.csv")))
+        png = os.path.join(self.top, "map.png")
+        run(CONSOLE, "export", "--format", "png", "--out", png, "--run", self.a)
+        self.assertEqual(read(png)[:4], b"\x89PNG")
+
+    def test_a_damaged_recording_is_read_as_far_as_it_goes(self):
+        broken = os.path.join(self.top, "broken.lcmlog")
+        data = bytearray(read(os.path.join(self.a, "mission.lcmlog")))
+        for offset in range(5000, len(data), 20011):
+            data[offset] ^= 0x55
+        with open(broken, "wb") as file:
+            file.write(data[: len(data) - 7])
+        check_schema("status", ask("status", "--log", broken))
+        run(CONSOLE, "status", "--log", os.path.join(self.a, "summary.json"), expect=1)
+
+    def test_what_is_wrong_is_said_in_one_line(self):
+        cases = [
+            (2, ["launch", "--world", "no/such/folder", "--out", self.top + "/x"]),
+            (2, ["launch", "--world", "reef:nowhere", "--out", self.top + "/x"]),
+            (2, ["launch", "--world", "reef:tuning", "--out", self.a]),  # holds a finished mission
+            (2, ["launch", "--world", "reef:tuning", "--matcher", "shoal", "--out", self.top + "/x"]),
+            (2, ["launch", "--world", "reef:tuning", "--profile", "best", "--out", self.top + "/x"]),
+            (2, ["launch", "--world", "reef:tuning", "--link", "mesh", "--out", self.top + "/x"]),
+            (1, ["evaluate", "--run", self.top, "--world", "reef:tuning"]),
+            (1, ["status", "--run", self.top]),
+            (1, ["status", "--node", self.top]),
+            (2, ["status"]),
+            (2, ["replay", "x"]),
+        ]
+        for code, arguments in cases:
+            done = run(CONSOLE, *arguments, expect=code)
+            self.assertEqual(done.stdout, "", arguments)
+            self.assertTrue(done.stderr.strip(), arguments)
+        world = os.path.join(self.top, "world")
+        os.makedirs(world)
+        with open(os.path.join(world, "world.json"), "w", encoding="utf-8") as file:
+            file.write('{"name": "broken",')
+        self.assertIn("world.json", run(CONSOLE, "launch", "--world", world, "--out", self.top + "/x", expect=2).stderr)
+        agent = os.path.join(BIN, "robot_agent")
+        self.assertIn("R99", run(agent, "--robot", "R99", "--source", "reef:tuning", "--robots", "3", expect=2).stderr)
+        self.assertIn("banana", run(agent, "--robot", "banana", "--source", "reef:tuning", expect=2).stderr)
+
+    @unittest.skipUnless("SHOAL_DATA" in os.environ, "the labelled worlds are elsewhere")
+    def test_a_real_world_flies_too(self):
+        out = os.path.join(self.top, "dubai")
+        launch(out, "--single", world=os.path.join(os.environ["SHOAL_DATA"], "dubai_tile5"))
+        with open(os.path.join(out, "summary.json"), encoding="utf-8") as file:
+            summary = json.load(file)
+        check_schema("summary", summary)
+        self.assertEqual(summary["cell_size_m"], 24)
+        self.assertGreater(summary["scores"]["scored"], 1000)
+
+
+class ByHand(unittest.TestCase):
+    """Agents and a fusion node started by hand, as on several machines."""
+
+    def setUp(self):
+        self.top = tempfile.mkdtemp(prefix="shoal_hand_")
+        self.started = []
+
+    def tearDown(self):
+        for process in self.started:
+            if process.poll() is None:
+                process.kill()
+            process.wait()
+        shutil.rmtree(self.top)
+
+    def start(self, program, *arguments):
+        log = open(os.path.join(self.top, f"log{len(self.started)}"), "w", encoding="utf-8")
+        process = subprocess.Popen([os.path.join(BIN, program), *arguments], stdout=log, stderr=log)
+        log.close()
+        self.started.append(process)
+        return process
+
+    def wait_for(self, what, limit=120):
+        deadline = time.monotonic() + limit
+        while time.monotonic() < deadline:
+            if what():
+                return
+            time.sleep(0.2)
+        self.fail("waited in vain: " + "".join(read(p).decode() for p in glob.glob(self.top + "/log*")))
+
+    def test_robots_that_fuse_and_the_operator_hold_one_map(self):
+        url = ["--lcm-url", "udpm://239.255.76.67:7811?ttl=0", "--mission", "hand", "--rate", "max"]
+        state, out = os.path.join(self.top, "state"), os.path.join(self.top, "out")
+        node = self.start("fusion_node", *url, "--state", state, "--out", out)
+        robots = []
+        for r in range(3):
+            fuse = ["--fuse", "--linger"] if r < 2 else ["--linger"]
+            robots.append(self.start("robot_agent", "--robot", f"R0{r}", "--source", "reef:tuning", *SIZE, *url, "--out", out, *fuse))
+
+        def settled():
+            try:
+                status = ask("status", "--node", state)
+            except AssertionError:
+                return False
+            check_schema("status", status)
+            names = [n["name"] for n in status["nodes"] if n["heard_whole"] and n["phase"] == "landed"]
+            return names == ["R00", "R01", "R02"]
+
+        self.wait_for(settled)
+        check_schema("labels", ask("labels", "--node", state))
+        exported = os.path.join(self.top, "live.csv")
+        run(CONSOLE, "export", "--format", "csv", "--out", exported, "--node", state)
+        time.sleep(3)  # the two robots hear the last of each other
+        for process in robots:
+            process.send_signal(signal.SIGTERM)
+        for process in robots:
+            self.assertEqual(process.wait(timeout=60), 0)
+        node.send_signal(signal.SIGINT)
+        self.assertEqual(node.wait(timeout=60), 0)
+        of_operator = read(os.path.join(out, "global_map.csv"))
+        self.assertGreater(len(of_operator), 1000)
+        self.assertEqual(read(exported), of_operator)
+        for r in range(2):
+            self.assertEqual(read(os.path.join(out, "robots", f"R0{r}", "global_map.csv")), of_operator, r)
+            self.assertEqual(read(os.path.join(out, "robots", f"R0{r}", "labels.csv")), read(os.path.join(out, "labels.csv")))
+
+    def test_a_robot_leaves_when_it_was_heard(self):
+        url = ["--lcm-url", "udpm://239.255.76.67:7812?ttl=0", "--rate", "max"]
+        self.start("fusion_node", *url, "--state", os.path.join(self.top, "state"))
+        robot = self.start("robot_agent", "--robot", "R00", "--source", "reef:tuning", "--observations", "3", *url)
+        self.assertEqual(robot.wait(timeout=120), 0)
+
+    def test_another_mission_on_the_url_is_refused(self):
+        url = "udpm://239.255.76.67:7813?ttl=0"
+        self.start("fusion_node", "--lcm-url", url, "--mission", "theirs", "--node", "OTHER", "--rate", "1")
+        time.sleep(1)
+        done = run(CONSOLE, "launch", "--world", "reef:tuning", *SIZE, "--lcm-url", url, "--out", self.top + "/x", expect=1)
+        self.assertRegex(done.stderr, r"another mission \(\d+\) is heard")
+
+    def test_rubbish_on_the_bus_is_counted_and_hurts_nobody(self):
+        import socket
+        url = ["--lcm-url", "udpm://239.255.76.67:7814?ttl=0", "--rate", "max"]
+        state = os.path.join(self.top, "state")
+        node = self.start("fusion_node", *url, "--state", state)
+        self.wait_for(lambda: os.path.exists(state + "/node.sock"))
+        sock = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        sock.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, 0)
+        for i in range(200):
+            body = bytes((i * 7 + k * 31) % 256 for k in range(i))
+            packet = b"LC02" + i.to_bytes(4, "big") + b"SHOAL_R00_TOPICS\0" + body
+            sock.sendto(packet, ("239.255.76.67", 7814))
+        robot = self.start("robot_agent", "--robot", "R00", "--source", "reef:tuning", "--observations", "2", *url)
+        self.assertEqual(robot.wait(timeout=120), 0)
+        node.send_signal(signal.SIGINT)
+        self.assertEqual(node.wait(timeout=30), 0)
+        self.assertRegex(read(os.path.join(self.top, "log0")).decode(), r"refused \d+ messages: too short")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]], verbosity=2)
