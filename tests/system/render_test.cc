@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "operator_console/render.h"
+
+#include <gtest/gtest.h>
+
+namespace shoal::console {
+namespace {
+
+using world::GlobalLabel;
+
+mapping::GlobalCell cell(int x, int y, int z, int label) {
+  return {{x, y, z}, GlobalLabel{label}, world::RobotId{0}, {0}, 1.f};
+}
+
+bool has(const cv::Mat& picture, const Rgb& color) {
+  for (int v = 0; v < picture.rows; ++v)
+    for (int u = 0; u < picture.cols; ++u)
+      if (picture.at<cv::Vec3b>(v, u) == cv::Vec3b(color[2], color[1], color[0])) return true;
+  return false;
+}
+
+TEST(ColorOfTest, IsTheLabelsOwn) {
+  EXPECT_EQ(colorOf(GlobalLabel{30007}), colorOf(GlobalLabel{30007}));
+  EXPECT_NE(colorOf(GlobalLabel{30007}), colorOf(GlobalLabel{30008}));
+}
+
+TEST(RenderTest, NorthIsUpAndTheHighestCellShows) {
+  mapping::GlobalMap map;
+  map.cells = {cell(0, 0, 0, 1), cell(0, 1, 0, 2), cell(0, 1, 1, 3)};
+  map.labels = {
+      {GlobalLabel{1}, "", 1, {}, {0}}, {GlobalLabel{2}, "", 1, {}, {0}}, {GlobalLabel{3}, "", 1, {}, {0}}};
+  const cv::Mat picture = render(map, world::Grid(1.0), "title");
+  // Two square cells above one another, 720 pixels high in all, below the title.
+  const auto at = [&](int row) { return picture.at<cv::Vec3b>(50 + row, 16 + 100); };
+  const Rgb top = colorOf(GlobalLabel{3}), bottom = colorOf(GlobalLabel{1});
+  EXPECT_EQ(at(100), cv::Vec3b(top[2], top[1], top[0]));
+  EXPECT_EQ(at(600), cv::Vec3b(bottom[2], bottom[1], bottom[0]));
+}
+
+TEST(RenderTest, BesideATruthLabelsTakeTheColourOfTheirClass) {
+  mapping::GlobalMap map;
+  for (int i = 0; i < 4; ++i) map.cells.push_back(cell(i, 0, 0, i < 3 ? 5 : 6));
+  map.labels = {{GlobalLabel{5}, "", 3, {}, {0}}, {GlobalLabel{6}, "", 1, {}, {0}}};
+  const TruthPicture truth{{{0, "sand", {1, 2, 3}}, {1, "rock", {9, 8, 7}}},
+                           [](const world::CellIndex& c) { return std::optional<int>(c.x < 3 ? 1 : 0); }};
+  const auto colors = alignedColors(map, truth);
+  EXPECT_EQ(colors.at(GlobalLabel{5}), (Rgb{9, 8, 7}));
+  EXPECT_EQ(colors.at(GlobalLabel{6}), (Rgb{1, 2, 3}));
+  EXPECT_TRUE(has(render(map, world::Grid(1.0), "t", truth), {9, 8, 7}));
+}
+
+TEST(RenderTest, AnEmptyMapSaysSo) {
+  const cv::Mat picture = render({}, world::Grid(1.0), "title");
+  EXPECT_FALSE(picture.empty());
+  EXPECT_EQ(encodePng(picture).substr(1, 3), "PNG");
+}
+
+}  // namespace
+}  // namespace shoal::console
