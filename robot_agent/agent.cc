@@ -23,8 +23,9 @@ using fusion_node::stopRequested;
 
 constexpr int64_t kSecondUs = 1'000'000;
 // As fast as possible still leaves the others time to listen: wall time for a mission second after landing.
-constexpr auto kBusySecond = std::chrono::milliseconds(10);
-constexpr auto kIdleSecond = std::chrono::milliseconds(30);
+constexpr auto kBusySecond = std::chrono::milliseconds(10);    // new content waits
+constexpr auto kIdleSecond = std::chrono::milliseconds(30);    // somebody may still lack something
+constexpr auto kHeardSecond = std::chrono::milliseconds(300);  // nobody does
 
 comms::TrafficClass trafficOf(mapping::PieceKind kind) {
   switch (kind) {
@@ -40,6 +41,10 @@ comms::TrafficClass trafficOf(mapping::PieceKind kind) {
 
 // Bytes of a piece's datagram that are no content: headers, channel, fixed fields.
 constexpr size_t kPieceOverheadBytes = 110;
+
+// Topics change with every image and are dear to encode and to send: what changed is told every so many
+// images, and at the end. A count, so that what is said does not depend on how fast the robot flew.
+constexpr size_t kPublishEvery = 5;
 
 std::string queueKey(const mapping::PieceKey& key, int32_t part) {
   std::string text = std::to_string(static_cast<int>(key.kind));
@@ -91,6 +96,7 @@ void Agent::fly() {
     takeIn(*observation);
     passTimeUntil(clock_.now());
   }
+  publish();
   if (stopRequested()) return;
   phase_ = wire::Phase::kLanded;
   spdlog::info("landed after {} observations: {} topics, {} cells, {:.1f} ms each", path_.size(),
@@ -103,7 +109,7 @@ void Agent::takeIn(const world::Observation& observation) {
   explorer_.observe(observation);
   belief_ = explorer_.belief();
   path_.push_back({observation.time, observation.world_from_camera});
-  publish();
+  if (path_.size() % kPublishEvery == 0) publish();
   const robot::StageTimes& t = explorer_.lastTimes();
   const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
   total_ms_ += took.count();
@@ -111,7 +117,9 @@ void Agent::takeIn(const world::Observation& observation) {
                 observation.number, t.words_ms, t.topics_ms, t.belief_ms, took.count() - t.total());
 }
 
+// Offers what has changed since the last time.
 void Agent::publish() {
+  if (path_.empty()) return;
   for (const mapping::Piece& whole : changes_.update(belief_)) {
     const std::string channel = comms::channelName(name_, wire::channelKind(wire::kindOf(whole)));
     // Under a thin budget small datagrams use more of it: comms/budget.h.
@@ -165,12 +173,14 @@ void Agent::linger() {
   while (!stopRequested()) {
     const auto start = std::chrono::steady_clock::now();
     passTimeUntil(clock_.now() + kSecondUs);
-    if (!options_.linger && sender_.queue().waitingBytes() == 0 && isHeard()) {
+    const bool busy = sender_.queue().waitingBytes() > 0;
+    const bool heard = !busy && isHeard();
+    if (!options_.linger && heard) {
       spdlog::info("a fusion node holds all that {} had to say", name_);
       return;
     }
     if (options_.rate == 0) {
-      std::this_thread::sleep_until(start + (sender_.queue().waitingBytes() > 0 ? kBusySecond : kIdleSecond));
+      std::this_thread::sleep_until(start + (busy ? kBusySecond : heard ? kHeardSecond : kIdleSecond));
     }
   }
 }
