@@ -75,7 +75,7 @@ int main(int argc, char** argv) {
     options.rate = fusion_node::parseRate(rate);
     options.matcher.sigma = fusion_node::parseSigma(sigma);
     if (similarity->count() == 0)
-      options.matcher.similarity = fusion_node::usualSimilarity(options.matcher.matcher);
+      options.matcher.similarity = matching::usualSimilarity(options.matcher.matcher);
     comms::channelName(options.name, "HEARTBEAT");  // a bad node name is a bad flag
     return run(options, url);
   } catch (const std::invalid_argument& error) {

@@ -83,6 +83,4 @@ double parseSigma(const std::string& text) {
   return sigma;
 }
 
-std::string usualSimilarity(const std::string& matcher) { return matcher == "hungarian" ? "l2" : "cosine"; }
-
 }  // namespace shoal::fusion_node

@@ -28,8 +28,4 @@ double parseRate(const std::string& text);
 /// @throws std::invalid_argument unless it is a number in (0, 1].
 double parseSigma(const std::string& text);
 
-/// The similarity that a matcher uses unless told: L2 for the sequential Hungarian, as in the paper's
-/// figures, else cosine.
-std::string usualSimilarity(const std::string& matcher);
-
 }  // namespace shoal::fusion_node

@@ -37,7 +37,7 @@ void evaluate(const Flags& flags) {
   const auto world = world::openWorld(flags.world, summary.at("seed").get<uint64_t>());
   std::vector<matching::MatcherOptions> matchers = eval::allMatchers();
   if (flags.matcher != "all") {
-    matchers = {{.matcher = flags.matcher, .similarity = fusion_node::usualSimilarity(flags.matcher)}};
+    matchers = {{.matcher = flags.matcher, .similarity = matching::usualSimilarity(flags.matcher)}};
     matching::match(matching::DescriptorSet{}, matchers[0]);  // an unknown matcher is refused here, by name
   }
   for (matching::MatcherOptions& options : matchers) {

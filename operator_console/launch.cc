@@ -107,6 +107,7 @@ class Mission {
   std::vector<std::string> settleRecording();
   void stop(const std::vector<std::string>& names, int signal, const char* doing);
   void stopTeam();
+  std::string singleProgress() const;
   void stopLogger();
 
   LaunchOptions options_;
@@ -116,7 +117,7 @@ class Mission {
   TerminalBlock block_;
   Clock::time_point started_, drawn_;
   std::set<std::string> may_end_ = {"single"};  // in good order
-  const char* doing_ = "starting";
+  std::string doing_ = "starting";
 };
 
 // Listens, redraws, and throws when the mission cannot go on.
@@ -237,6 +238,13 @@ void Mission::stopTeam() {
   stop({"OPERATOR"}, SIGTERM, "the map is written");
 }
 
+// It is off the link, so its log says how far it is: "...: 420 of 720 observations".
+std::string Mission::singleProgress() const {
+  const auto lines = lastLines(options_.out + "/logs/single.log", 1);
+  const size_t said = lines.empty() ? std::string::npos : lines[0].find("single: ");
+  return said == std::string::npos ? "" : ": " + lines[0].substr(said + 8);
+}
+
 void Mission::stopLogger() {
   turnUntil(kLoggerFlush, [] { return false; });
   may_end_.insert("logger");
@@ -259,8 +267,10 @@ int Mission::run(bool url_was_given) {
     if (lacking.empty() && options_.record) lacking = settleRecording();
     stopTeam();
     if (options_.record) stopLogger();
-    doing_ = "waiting for the robot that flies alone";
-    turnUntil(Clock::duration::max() / 4, [this] { return !children_.isRunning("single"); });
+    turnUntil(Clock::duration::max() / 4, [this] {
+      doing_ = "waiting for the robot that flies alone" + singleProgress();
+      return !children_.isRunning("single");
+    });
     block_.clear();
     run.last_heartbeats = watch_.nodes();
     run.nodes = watch_.statuses();

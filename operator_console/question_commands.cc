@@ -43,7 +43,7 @@ void addWhere(CLI::App& command, Question& q) {
 void complete(Question& q) {
   q.where.matcher.sigma = fusion_node::parseSigma(q.sigma);
   q.where.matcher.similarity =
-      q.similarity.empty() ? fusion_node::usualSimilarity(q.where.matcher.matcher) : q.similarity;
+      q.similarity.empty() ? matching::usualSimilarity(q.where.matcher.matcher) : q.similarity;
 }
 
 Json answerTo(Question& q, const Json& question) {

@@ -116,7 +116,7 @@ int main(int argc, char** argv) {
     fusion_node::setUpLog(f.single ? "single" : f.robot, f.log_level);
     fusion_node::catchStopSignals();
     if (similarity->count() == 0)
-      f.agent.matcher.similarity = fusion_node::usualSimilarity(f.agent.matcher.matcher);
+      f.agent.matcher.similarity = matching::usualSimilarity(f.agent.matcher.matcher);
     return run(std::move(f));
   } catch (const std::invalid_argument& error) {
     std::fprintf(stderr, "robot_agent: %s\n", error.what());
