@@ -22,8 +22,7 @@ std::vector<Piece> wholePieces(const LocalBelief& belief) {
   for (const BelievedTopic& topic : belief.topics) {
     pieces.push_back({.key = {belief.robot, PieceKind::kTopic, {number(topic.id), 0, 0}},
                       .version = belief.version,
-                      .content = TopicPart{topic.created, topic.weight, group_sizes,
-                                           quantize(topic.words, belief.groups)}});
+                      .content = TopicPart{topic.created, topic.weight, group_sizes, quantize(topic.words)}});
   }
   std::map<std::array<int32_t, 3>, BrickPart> bricks;
   std::map<std::array<int32_t, 3>, CertaintyPart> certainties;

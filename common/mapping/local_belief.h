@@ -37,11 +37,10 @@ struct LocalBelief {
   std::vector<BelievedCell> cells;    ///< ascending by cell
 };
 
-/// A topic's counts as integers fit to travel: in each word group, counts are divided by a hundredth of the
-/// group's L2 norm and rounded half up; words that round to 0 are left out. Over 2743 groups of real topics
-/// the cosine between before and after was .99996 in the median and .983 at least (groups of thousands of
-/// words).
-std::vector<world::WordCount> quantize(const std::vector<world::WordCount>& counts,
-                                       const std::vector<world::WordGroup>& groups);
+/// A topic's counts as integers fit to travel: divided by a thousandth of their L2 norm, when that is above
+/// 1, and rounded half up; words that round to 0 are left out. One step for all words, so that the word
+/// groups keep their weights. With n words left out the cosine to the exact counts stays above 1 - n /
+/// 8,000,000.
+std::vector<world::WordCount> quantize(const std::vector<world::WordCount>& counts);
 
 }  // namespace shoal::mapping

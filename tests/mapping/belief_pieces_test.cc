@@ -17,16 +17,22 @@ LocalBelief belief(int observation) {
       .cells = {{{-1, 0, 0}, world::TopicId{0}, {1000}, 0.5f}, {{0, 0, 0}, world::TopicId{4}, {1000}, 1.f}}};
 }
 
-TEST(QuantizeTest, RoundsToAHundredthOfTheGroupsNorm) {
-  // Group one: counts 3, 4: norm 5, steps of .05: 60 and 80. Group two: 1 word: 100. By hand.
-  const std::vector<world::WordGroup> groups{{"one", 0, 10}, {"two", 10, 5}};
-  EXPECT_EQ(quantize({{0, 3}, {9, 4}, {12, 7}}, groups),
-            (std::vector<world::WordCount>{{0, 60}, {9, 80}, {12, 100}}));
+TEST(QuantizeTest, LeavesSmallCountsExact) {
+  EXPECT_EQ(quantize({{0, 3}, {9, 4}}), (std::vector<world::WordCount>{{0, 3}, {9, 4}}));  // norm 5
 }
 
-TEST(QuantizeTest, LeavesOutWhatRoundsToNothing) {
-  // Norm of (1000, 1) is 1000.0005: 1 / 10 rounds to 0.
-  EXPECT_EQ(quantize({{0, 1000}, {1, 1}}, {{"g", 0, 2}}), (std::vector<world::WordCount>{{0, 100}}));
+TEST(QuantizeTest, RoundsToAThousandthOfTheNorm) {
+  // Norm of (3000, 4000) is 5000, the step 5: 600 and 800. 12 / 5 rounds to 2, 13 / 5 to 3, 2 / 5 to nothing.
+  EXPECT_EQ(quantize({{0, 3000}, {1, 4000}}), (std::vector<world::WordCount>{{0, 600}, {1, 800}}));
+  EXPECT_EQ(quantize({{0, 3000}, {1, 4000}, {2, 12}, {3, 13}, {4, 2}}),
+            (std::vector<world::WordCount>{{0, 600}, {1, 800}, {2, 2}, {3, 3}}));
+}
+
+// Words of all groups keep their ratios: a rare group must not weigh as much as a frequent one.
+TEST(QuantizeTest, KeepsTheWeightOfARareGroup) {
+  const auto quantized = quantize({{5, 100'000}, {5000, 1000}});
+  ASSERT_EQ(quantized.size(), 2u);
+  EXPECT_EQ(quantized[0].count, 100 * quantized[1].count);
 }
 
 TEST(WholePiecesTest, OnePieceATopicAndTwoABrick) {
