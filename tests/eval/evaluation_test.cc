@@ -31,7 +31,7 @@ TEST(ScoreTest, OfNothingIsZero) {
 // Two robots; the first calls sand 0 and rock 1, the second the other way round. By words CLEAR and Hungarian
 // put that right, ID cannot.
 TEST(ScoreMatchersTest, TellsMatchersApart) {
-  Run run;
+  eval::Run run;
   for (int r = 0; r < 2; ++r) {
     mapping::LocalBelief b{world::RobotId{r}, {0, 0}, {{"g", 0, 10}}, {}, {}};
     for (int t = 0; t < 2; ++t) {
