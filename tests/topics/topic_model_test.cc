@@ -112,7 +112,7 @@ std::string mission(const Hyperparameters& h, uint64_t seed, RobotId robot, int3
   return dump(model.snapshot());
 }
 
-const Hyperparameters kQuick{.max_topics = 8, .resamples_per_observation = 2000};
+const Hyperparameters kQuick{.max_topics = 8, .beta = 0.42, .resamples_per_observation = 2000};
 
 TEST(TopicModelTest, KnowsNothingBeforeTheFirstImage) {
   TopicModel model({}, kVocabulary, 1, RobotId{0});
@@ -126,8 +126,8 @@ TEST(TopicModelTest, KnowsNothingBeforeTheFirstImage) {
 // What a snapshot promises, checked on a real mission against the words that went in.
 TEST(TopicModelTest, SnapshotsHoldEveryWordAndCellOnceInOrder) {
   for (const double gamma : {0.0, 0.05}) {
-    TopicModel model({.max_topics = 8, .gamma = gamma, .resamples_per_observation = 2000}, kVocabulary, 1,
-                     RobotId{0});
+    TopicModel model({.max_topics = 8, .beta = 0.42, .gamma = gamma, .resamples_per_observation = 2000},
+                     kVocabulary, 1, RobotId{0});
     Strip strip(5, 3);
     std::map<int32_t, int64_t> words_in;
     std::map<CellIndex, int32_t> seen;
@@ -297,7 +297,8 @@ TEST(TopicModelTest, AModerateGammaOpensTopicsAsTheyAreSeen) {
 }
 
 TEST(TopicModelTest, AZeroGammaNeedsNoNewTopicRule) {
-  TopicModel model({.max_topics = 8, .resamples_per_observation = 0}, kVocabulary, 1, RobotId{0});
+  TopicModel model({.max_topics = 8, .beta = 0.42, .resamples_per_observation = 0}, kVocabulary, 1,
+                   RobotId{0});
   Strip strip(1, 3);
   model.observe(strip.fly(0));
   EXPECT_GE(model.numTopics(), 4);
@@ -306,8 +307,8 @@ TEST(TopicModelTest, AZeroGammaNeedsNoNewTopicRule) {
 // A large gamma lets topics die and open all the time. An id names one topic for ever: once it is gone it
 // never returns, it keeps its creation time, and a younger topic has a larger id.
 TEST(TopicModelTest, IdsAreNeverUsedAgain) {
-  TopicModel model({.max_topics = 20, .gamma = 10.0, .resamples_per_observation = 2000}, kVocabulary, 1,
-                   RobotId{0});
+  TopicModel model({.max_topics = 20, .beta = 0.42, .gamma = 10.0, .resamples_per_observation = 2000},
+                   kVocabulary, 1, RobotId{0});
   Strip strip(1, 3);
   std::map<int32_t, int64_t> created;
   std::set<int32_t> gone;
