@@ -9,7 +9,8 @@ namespace shoal::console {
 void addUnbuiltCommands(CLI::App& app, Action& chosen) {
   for (const std::string name : {"replay", "verify", "reproduce", "serve", "spy", "doctor", "area", "why",
                                  "name", "link", "unlink", "exclude", "undo", "tune"}) {
-    CLI::App* command = app.add_subcommand(name, "not built yet")->group("")->prefix_command();
+    CLI::App* command =
+        app.add_subcommand(name, "not built yet")->group("")->prefix_command()->fallthrough(false);
     command->set_help_flag();
     command->callback([&chosen, name] {
       chosen = [name]() -> int { throw std::invalid_argument(name + " is not built yet"); };
