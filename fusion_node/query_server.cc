@@ -83,6 +83,16 @@ void QueryServer::poll() {
   }
 }
 
+// A client's question is a peer's bytes: whatever is wrong with it goes back as an error.
+Json QueryServer::answerTo(const Json& question) const {
+  if (!question.is_object()) return {{"error", "a question is one line holding a JSON object"}};
+  try {
+    return handler_(question);
+  } catch (const Json::exception& error) {
+    return {{"error", error.what()}};
+  }
+}
+
 // False when the connection is over.
 bool QueryServer::serve(int fd, Client& client) {
   if (++client.polls > kMaxPolls) return false;
@@ -95,10 +105,7 @@ bool QueryServer::serve(int fd, Client& client) {
     const size_t line_end = client.inbox.find('\n');
     if (line_end == std::string::npos) return !ended && client.inbox.size() <= kMaxQuestionBytes;
     const Json question = Json::parse(client.inbox.substr(0, line_end), nullptr, false);
-    client.outbox = (question.is_object() ? handler_(question)
-                                          : Json{{"error", "a question is one line holding a JSON object"}})
-                        .dump(-1, ' ', false, Json::error_handler_t::replace) +
-                    "\n";
+    client.outbox = answerTo(question).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
   }
   while (!client.outbox.empty()) {
     const ssize_t n = ::send(fd, client.outbox.data(), client.outbox.size(), MSG_NOSIGNAL);

@@ -36,6 +36,7 @@ class QueryServer {
     int polls = 0;
   };
   bool serve(int fd, Client& client);
+  nlohmann::ordered_json answerTo(const nlohmann::ordered_json& question) const;
 
   std::string path_;
   Handler handler_;

@@ -91,10 +91,12 @@ Json labelsAnswer(const MissionView& view) {
 
 Json atAnswer(const MissionView& view, double x_m, double y_m) {
   const world::Grid grid(view.cell_size_m);
-  const world::CellIndex column = grid.cellOf({x_m, y_m, 0});
+  const double farthest = view.cell_size_m * (INT32_MAX - 1);  // cells have 32-bit indices
+  const bool is_near = std::abs(x_m) <= farthest && std::abs(y_m) <= farthest;
+  const world::CellIndex column = is_near ? grid.cellOf({x_m, y_m, 0}) : world::CellIndex{};
   Json cells = Json::array();
   for (const GlobalCell& c : view.map.cells) {
-    if (c.cell.x != column.x || c.cell.y != column.y) continue;
+    if (!is_near || c.cell.x != column.x || c.cell.y != column.y) continue;
     const Eigen::Vector3d p = grid.centerOf(c.cell);
     Json cell{{"x_m", rounded(p.x(), 1e3)},
               {"y_m", rounded(p.y(), 1e3)},

@@ -32,12 +32,11 @@ StackedTopics stack(const BeliefStore& beliefs) {
     if (const auto* part = std::get_if<TopicPart>(&piece.content)) {
       if (part->weight <= 0) return;
       const world::TopicId id{piece.key.index[0]};
-      HeardTopic& topic = heard[{piece.key.robot, id}];
-      topic.robot = piece.key.robot;
-      topic.id = id;
-      topic.created = part->created;
-      topic.weight = part->weight;
-      topic.group_sizes = part->group_sizes;
+      const auto [known, is_first] = heard.try_emplace(
+          {piece.key.robot, id},
+          HeardTopic{piece.key.robot, id, part->created, part->weight, 0, part->group_sizes, {}});
+      HeardTopic& topic = known->second;
+      if (!is_first && topic.group_sizes != part->group_sizes) return;  // part 0 decides
       topic.words.insert(topic.words.end(), part->words.begin(), part->words.end());
     } else if (const auto* brick = std::get_if<BrickPart>(&piece.content)) {
       for (const BrickCell& c : brick->cells) ++cells[{piece.key.robot, c.topic}];
@@ -46,7 +45,10 @@ StackedTopics stack(const BeliefStore& beliefs) {
 
   StackedTopics stacked;
   for (auto& [key, topic] : heard) {
+    // Honest parts share no word. Of others the first count stands.
     std::ranges::sort(topic.words);
+    const auto repeated = std::ranges::unique(topic.words, {}, &world::WordCount::word);
+    topic.words.erase(repeated.begin(), repeated.end());
     topic.cells = cells.contains(key) ? cells.at(key) : 0;
     stacked.topics.push_back(std::move(topic));
   }

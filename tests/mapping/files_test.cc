@@ -3,11 +3,13 @@
 #include <fstream>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "shoal/mapping/atomic_file.h"
 #include "shoal/mapping/belief_files.h"
 #include "shoal/mapping/csv.h"
 #include "shoal/mapping/map_files.h"
+#include "shoal/mapping/queries.h"
 
 namespace shoal::mapping {
 namespace {
@@ -75,6 +77,16 @@ TEST_F(FilesTest, AGlobalMapComesBackAsItWas) {
   const GlobalMap back = readGlobalMap(folder_, grid);
   EXPECT_EQ(back.cells, map.cells);
   EXPECT_EQ(back.labels, map.labels);
+}
+
+TEST(AtAnswerTest, NothingIsAsFarAwayAsNumbersGo) {
+  MissionView view;
+  view.map.cells.push_back({{0, 0, 0}, world::GlobalLabel{1}, world::RobotId{0}, {0}, 1.f});
+  EXPECT_EQ(atAnswer(view, 0.2, -0.4)["cells"].size(), 1u);
+  for (const double far : {1e300, -1e300, 3e9, -3e9}) {
+    EXPECT_TRUE(atAnswer(view, far, 0)["cells"].empty()) << far;
+    EXPECT_TRUE(atAnswer(view, 0, far)["cells"].empty()) << far;
+  }
 }
 
 // Two cells above one another cover the ground once.

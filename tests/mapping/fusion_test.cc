@@ -97,6 +97,26 @@ TEST(FuseTest, SummarisesEveryLabelThatHasCells) {
   EXPECT_EQ(shared.first_seen.us, 10);
 }
 
+// A peer's parts may be valid each by itself and not together. The node must not fall over them.
+TEST(FuseTest, PartsThatRepeatAWordOrDisagreeOnTheVocabularyHurtNobody) {
+  BeliefStore store = storeOf(twoRobots());
+  const auto part = [](int32_t index, std::vector<int32_t> layout, std::vector<world::WordCount> words) {
+    return Piece{.key = {RobotId{2}, PieceKind::kTopic, {0, 0, 0}},
+                 .version = {0, 1},
+                 .part = index,
+                 .num_parts = 3,
+                 .content = TopicPart{{1}, 50, std::move(layout), std::move(words)}};
+  };
+  store.apply(part(0, {100}, {{7, 50}}));
+  store.apply(part(1, {100}, {{7, 50}}));
+  store.apply(part(2, {5000}, {{4000, 9}}));
+  store.apply({.key = {RobotId{2}, PieceKind::kBrick, {0, 0, 0}},
+               .version = {0, 1},
+               .content = BrickPart{{{{9, 0, 0}, TopicId{0}, {1}}}}});
+  EXPECT_EQ(labelAt(fuse(store, {}), {9, 0, 0}), GlobalLabel{20000});  // word 7, and the oldest that has it
+  EXPECT_EQ(labelAt(fuse(store, {}), {0, 0, 0}), GlobalLabel{20000});
+}
+
 TEST(FuseTest, OfNothingIsNothing) {
   const GlobalMap map = fuse(BeliefStore{}, {});
   EXPECT_TRUE(map.cells.empty());

@@ -132,6 +132,19 @@ TEST_F(QueryServerTest, NonsenseGetsAnErrorNotADeadServer) {
   ::close(fd);
 }
 
+TEST_F(QueryServerTest, AQuestionThatCannotBeAnsweredGetsAnErrorNotADeadServer) {
+  QueryServer server(dir_, [](const Json& question) -> Json { return {{"x", question.at("missing")}}; });
+  std::atomic<bool> done = false;
+  Json answer;
+  std::thread client([&] {
+    answer = askNode(dir_, {{"query", 5}});
+    done = true;
+  });
+  while (!done) server.poll();
+  client.join();
+  EXPECT_TRUE(answer.contains("error"));
+}
+
 TEST_F(QueryServerTest, OneFolderOneNode) {
   QueryServer server(dir_, echo);
   EXPECT_THROW(QueryServer(dir_, echo), std::runtime_error);
