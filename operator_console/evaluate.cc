@@ -12,7 +12,7 @@
 #include "fusion_node/process.h"
 #include "operator_console/command.h"
 #include "shoal/mapping/atomic_file.h"
-#include "shoal/world/world.h"
+#include "shoal/world/place.h"
 
 namespace shoal::console {
 namespace {
@@ -34,7 +34,8 @@ void evaluate(const Flags& flags) {
       throw std::runtime_error(flags.run + "/summary.json: " + error.what());
     }
   }();
-  const auto world = world::openWorld(flags.world, summary.at("seed").get<uint64_t>());
+  const world::SurveyOptions team = teamOf(summary);
+  const auto place = world::openPlace(flags.world, summary.at("seed").get<uint64_t>());
   std::vector<matching::MatcherOptions> matchers = eval::allMatchers();
   if (flags.matcher != "all") {
     matchers = {{.matcher = flags.matcher, .similarity = matching::usualSimilarity(flags.matcher)}};
@@ -44,7 +45,7 @@ void evaluate(const Flags& flags) {
     options.sigma = fusion_node::parseSigma(flags.sigma);
     if (!flags.similarity.empty()) options.similarity = flags.similarity;
   }
-  const Evaluation result = evaluateRun(flags.run, *world, summary.at("cell_size_m"), matchers);
+  const Evaluation result = evaluateRun(flags.run, *place, team, matchers);
   if (flags.json) {
     std::cout << result.json().dump(2) << '\n';
   } else {
@@ -71,20 +72,34 @@ Json Evaluation::json() const {
   return result;
 }
 
-Evaluation evaluateRun(const std::string& dir, const world::World& world, double cell_size_m,
+world::SurveyOptions teamOf(const Json& summary) {
+  try {
+    world::SurveyOptions team;
+    team.num_robots = static_cast<int>(summary.at("robots").size());
+    team.observations = summary.at("observations");
+    team.cell_size_m = summary.at("cell_size_m");
+    team.altitude_m = summary.at("altitude_m");
+    team.frame_period_s = summary.value("frame_period_s", team.frame_period_s);
+    return team;
+  } catch (const Json::exception& error) {
+    throw std::runtime_error(std::string("summary.json: ") + error.what());
+  }
+}
+
+Evaluation evaluateRun(const std::string& dir, const world::Place& place, const world::SurveyOptions& team,
                        const std::vector<matching::MatcherOptions>& matchers) {
-  const world::Grid grid(cell_size_m);
+  const world::Grid grid(team.cell_size_m);
   const eval::Run run = eval::readRun(dir, grid);
   Evaluation result;
-  result.cell_size_m = cell_size_m;
+  result.cell_size_m = team.cell_size_m;
   result.matchers = matchers;
-  result.truth = {world.classes(), eval::truthFor(world, grid, run, world::Intrinsics{})};
+  result.truth = {place.classes(), eval::truthFor(place, team, grid)};
   result.scores = eval::scoreMatchers(run, matchers, result.truth.of_cell);
   if (run.single) result.single = eval::scoreSingle(*run.single, result.truth.of_cell);
   std::vector<world::CellIndex> cells;
   for (const mapping::LocalBelief& belief : run.robots)
     for (const mapping::BelievedCell& c : belief.cells) cells.push_back(c.cell);
-  result.coverage = eval::coverageOf(cells, world, grid);
+  if (const auto extent = place.extent()) result.coverage = eval::coverageOf(cells, *extent, grid);
   return result;
 }
 

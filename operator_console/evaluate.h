@@ -24,9 +24,14 @@ struct Evaluation {
   TruthPicture truth;
 };
 
-/// Scores a run's local maps under each option set. `world` must outlive the result, whose truth asks it.
+/// How the team of a finished mission flew, from its summary.json.
+/// @throws std::runtime_error naming what is missing or of the wrong type.
+world::SurveyOptions teamOf(const nlohmann::ordered_json& summary);
+
+/// Scores a run's local maps under each option set. `place` must outlive the result, whose truth asks it.
+/// @param team  as it flew: completed() for that place.
 /// @throws std::runtime_error naming what is missing or broken in the run.
-Evaluation evaluateRun(const std::string& dir, const world::World& world, double cell_size_m,
+Evaluation evaluateRun(const std::string& dir, const world::Place& place, const world::SurveyOptions& team,
                        const std::vector<matching::MatcherOptions>& matchers);
 
 /// The table that people read.

@@ -14,7 +14,7 @@
 #include "shoal/mapping/queries.h"
 #include "shoal/version.h"
 #include "shoal/world/ids.h"
-#include "shoal/world/world.h"
+#include "shoal/world/place.h"
 
 namespace shoal::console {
 namespace {
@@ -51,13 +51,13 @@ Json nodesOf(const RunInfo& run) {
 
 std::string finishRun(const RunInfo& run) {
   const LaunchOptions& options = run.options;
-  const auto world = world::openWorld(options.world, options.seed);
+  const auto place = world::openPlace(options.world, options.seed);
   const world::Grid grid(options.cell_size_m);
   const mapping::GlobalMap map = mapping::readGlobalMap(options.out, grid);
-  const Evaluation evaluation = evaluateRun(options.out, *world, options.cell_size_m, eval::allMatchers());
-  const bool has_truth = !world->classes().empty();
+  const Evaluation evaluation = evaluateRun(options.out, *place, surveyOf(options), eval::allMatchers());
+  const bool has_truth = !place->classes().empty();
   const std::string title =
-      fmt::format("{}, {} robots, {} labels", world->name(), options.num_robots, map.labels.size());
+      fmt::format("{}, {} robots, {} labels", place->name(), options.num_robots, map.labels.size());
   mapping::writeFileAtomically(
       options.out + "/global_map.png",
       encodePng(render(map, grid, title, has_truth ? std::optional(evaluation.truth) : std::nullopt)));
@@ -73,6 +73,7 @@ std::string finishRun(const RunInfo& run) {
       {"world", options.world},
       {"cell_size_m", options.cell_size_m},
       {"altitude_m", options.altitude_m},
+      {"frame_period_s", options.frame_period_s},
       {"robots", robots},
       {"observations", options.observations},
       {"bytes", bytesByClass(run)},

@@ -6,7 +6,7 @@
 
 #include "fusion_node/process.h"
 #include "shoal/comms/lcm_url.h"
-#include "shoal/world/world.h"
+#include "shoal/world/place.h"
 
 namespace shoal::console {
 namespace {
@@ -57,10 +57,22 @@ void check(const LaunchOptions& options) {
 }
 
 LaunchOptions completed(LaunchOptions options) {
-  const auto world = world::openWorld(options.world, options.seed);
-  if (options.cell_size_m == 0) options.cell_size_m = world->defaultCellSize();
-  if (options.altitude_m == 0) options.altitude_m = world::Intrinsics{}.fx * world->metresPerPixel();
+  const auto place = world::openPlace(options.world, options.seed);
+  const world::SurveyOptions team = place->completed(surveyOf(options));
+  options.observations = team.observations;
+  options.cell_size_m = team.cell_size_m;
+  options.altitude_m = team.altitude_m;
   return options;
+}
+
+world::SurveyOptions surveyOf(const LaunchOptions& options) {
+  world::SurveyOptions team;
+  team.num_robots = options.num_robots;
+  team.observations = options.observations;
+  team.cell_size_m = options.cell_size_m;
+  team.altitude_m = options.altitude_m;
+  team.frame_period_s = options.frame_period_s;
+  return team;
 }
 
 }  // namespace shoal::console

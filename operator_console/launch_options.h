@@ -5,6 +5,7 @@
 #include <string>
 
 #include "shoal/matching/matcher.h"
+#include "shoal/world/survey.h"
 
 namespace shoal::console {
 
@@ -38,5 +39,8 @@ void check(const LaunchOptions& options);
 /// The same with the world's cell size and the altitude of native resolution where they were left open.
 /// @throws std::invalid_argument when the world cannot be opened.
 LaunchOptions completed(LaunchOptions options);
+
+/// How the team flies.
+world::SurveyOptions surveyOf(const LaunchOptions& options);
 
 }  // namespace shoal::console

@@ -12,7 +12,7 @@
 #include "shoal/comms/lcm_bus.h"
 #include "shoal/comms/lcm_url.h"
 #include "shoal/version.h"
-#include "shoal/world/survey.h"
+#include "shoal/world/place.h"
 
 namespace {
 
@@ -41,19 +41,17 @@ int run(Flags flags) {
   options.rate = fusion_node::parseRate(flags.rate);
   options.matcher.sigma = fusion_node::parseSigma(flags.sigma);
 
-  const auto world = world::openWorld(flags.source, options.explorer.seed);
-  if (flags.survey.cell_size_m <= 0) flags.survey.cell_size_m = world->defaultCellSize();
-  options.explorer.cell_size_m = flags.survey.cell_size_m;
-  const auto path = world::surveyPath(*world, flags.survey, number(*id), flags.single);
-  const auto source =
-      world::makeSurveySource(*world, path, flags.survey.intrinsics, flags.survey.frame_period_s);
+  const auto place = world::openPlace(flags.source, options.explorer.seed);
+  const world::SurveyOptions team = place->completed(flags.survey);
+  options.explorer.cell_size_m = team.cell_size_m;
+  const auto source = place->source(team, number(*id), flags.single);
   if (flags.single) {
     robot_agent::runAlone(options, *source);
     return 0;
   }
   comms::LcmBus bus(flags.url);
-  spdlog::info("{} flies {} observations over {}, mission {}, on {}", flags.robot, path.size(), world->name(),
-               options.mission, bus.url());
+  spdlog::info("{} flies {} observations over {}, mission {}, on {}", flags.robot,
+               source->numObservations().value_or(0), place->name(), options.mission, bus.url());
   robot_agent::Agent(options, *source, bus).run();
   return 0;
 }

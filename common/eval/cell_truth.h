@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <unordered_map>
+#include <vector>
 
 #include "shoal/world/grid.h"
 #include "shoal/world/observation.h"
-#include "shoal/world/world.h"
+#include "shoal/world/place.h"
 
 namespace shoal::eval {
 
 /// The true class of every cell, gathered by projecting labelled frames: every pixel with a valid depth votes
-/// in the cell it falls into.
+/// in the cell it falls into. 255 = unlabelled.
 class ProjectedTruth {
  public:
   explicit ProjectedTruth(const world::Grid& grid) : grid_(grid) {}
@@ -27,16 +27,21 @@ class ProjectedTruth {
   std::optional<int> at(const world::CellIndex& cell) const;
 
  private:
+  struct Count {
+    uint8_t id = 0;
+    int32_t pixels = 0;
+  };
   struct Votes {
-    std::array<int32_t, 32> of_class{};  // classes 0..31; Worlds have fewer
+    std::vector<Count> of_class;  // in any order: few classes meet in a cell
     int32_t unlabelled = 0;
+    void add(uint8_t id, int32_t pixels);
   };
   world::Grid grid_;
   std::unordered_map<world::CellIndex, Votes, world::CellHash> votes_;  // looked up; sums only
 };
 
 /// The true class of a cell of a flat, fully labelled picture; nothing where it is not labelled.
-std::optional<int> flatTruth(const world::World& world, const world::Grid& grid,
+std::optional<int> flatTruth(const world::Place& place, const world::Grid& grid,
                              const world::CellIndex& cell);
 
 }  // namespace shoal::eval

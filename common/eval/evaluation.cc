@@ -2,6 +2,8 @@
 #include "shoal/eval/evaluation.h"
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -31,7 +33,6 @@ Run readRun(const std::string& dir, const world::Grid& grid) {
   for (const world::RobotId robot : robots) {
     const std::string folder = dir + "/robots/" + name(robot);
     run.robots.push_back(mapping::readBelief(folder, robot, grid));
-    run.paths.push_back(mapping::readPoses(folder + "/poses.txt"));
   }
   if (fs::exists(fs::path(dir) / "single" / "map.csv")) {
     run.single = mapping::readBelief(dir + "/single", world::RobotId{0}, grid);
@@ -39,18 +40,22 @@ Run readRun(const std::string& dir, const world::Grid& grid) {
   return run;
 }
 
-TruthOfCell truthFor(const world::World& world, const world::Grid& grid, const Run& run,
-                     const world::Intrinsics& intrinsics) {
-  if (world.hasFlatTruth()) {
-    return [&world, grid](const world::CellIndex& cell) { return flatTruth(world, grid, cell); };
+TruthOfCell truthFor(const world::Place& place, const world::SurveyOptions& team, const world::Grid& grid) {
+  if (place.hasFlatTruth()) {
+    return [&place, grid](const world::CellIndex& cell) { return flatTruth(place, grid, cell); };
   }
-  std::vector<world::Pose> poses;
-  for (const auto& path : run.paths)
-    for (const mapping::StampedPose& pose : path) poses.push_back(pose.world_from_camera);
-  // Votes are sums, so it does not matter which thread counts which frame.
+  if (place.classes().empty()) {
+    return [](const world::CellIndex&) { return std::optional<int>(); };
+  }
+  std::vector<std::unique_ptr<world::ObservationSource>> sources;  // made here, where it may throw
+  for (int robot = 0; robot < team.num_robots; ++robot) sources.push_back(place.source(team, robot));
   std::array<ProjectedTruth, 2> halves{ProjectedTruth(grid), ProjectedTruth(grid)};
+  std::atomic<size_t> next{0};
   const auto project = [&](size_t half) {
-    for (size_t i = half; i < poses.size(); i += 2) halves[half].add(world.render(intrinsics, poses[i]));
+    for (size_t robot = next++; robot < sources.size(); robot = next++) {
+      while (const auto frame = sources[robot]->next()) halves[half].add(*frame);
+      sources[robot].reset();
+    }
   };
   {
     const std::jthread other(project, 1);
@@ -110,9 +115,8 @@ std::vector<matching::MatcherOptions> allMatchers() {
           {.matcher = "clear", .similarity = "cosine", .sigma = 0.75}};
 }
 
-double coverageOf(const std::vector<world::CellIndex>& cells, const world::World& world,
+double coverageOf(const std::vector<world::CellIndex>& cells, const world::Extent& extent,
                   const world::Grid& grid) {
-  const world::Extent extent = world.extent();
   const world::CellIndex first = grid.cellOf({extent.min_x, extent.min_y, 0});
   const world::CellIndex last = grid.cellOf({extent.max_x, extent.max_y, 0});
   // Cells whose centre lies inside the extent.

@@ -8,9 +8,8 @@
 #include <vector>
 
 #include "shoal/mapping/local_belief.h"
-#include "shoal/mapping/poses_file.h"
 #include "shoal/matching/matcher.h"
-#include "shoal/world/world.h"
+#include "shoal/world/place.h"
 
 namespace shoal::eval {
 
@@ -27,8 +26,7 @@ struct Score {
 /// A finished run as its files tell it.
 struct Run {
   std::vector<mapping::LocalBelief> robots;
-  std::vector<std::vector<mapping::StampedPose>> paths;  ///< per robot, for truth by projection
-  std::optional<mapping::LocalBelief> single;            ///< one robot that explored the same area
+  std::optional<mapping::LocalBelief> single;  ///< one robot that explored the same area
 };
 
 /// Reads `DIR/robots/R*/` and, when it is there, `DIR/single/`.
@@ -38,10 +36,11 @@ Run readRun(const std::string& dir, const world::Grid& grid);
 /// A cell's true class, when it has one.
 using TruthOfCell = std::function<std::optional<int>(const world::CellIndex&)>;
 
-/// The truth of a world: its own label picture, or the labels of the frames rendered along the run's paths
-/// (both cores). `world` must outlive the result.
-TruthOfCell truthFor(const world::World& world, const world::Grid& grid, const Run& run,
-                     const world::Intrinsics& intrinsics);
+/// The truth of a place: its own label picture where the ground is flat, else the labels of the frames that a
+/// team sees, projected into cells from where they were truly taken (a team on two threads; sums, so that the
+/// order does not matter). `place` must outlive the result.
+/// @throws std::invalid_argument as Place::source().
+TruthOfCell truthFor(const world::Place& place, const world::SurveyOptions& team, const world::Grid& grid);
 
 /// Scores labelled cells against the truth.
 Score score(const std::vector<std::pair<world::CellIndex, int>>& labels, const TruthOfCell& truth);
@@ -56,8 +55,8 @@ Score scoreSingle(const mapping::LocalBelief& single, const TruthOfCell& truth);
 /// The option sets of the paper's table that are built: ID, sequential Hungarian on L2, CLEAR on cosine .75.
 std::vector<matching::MatcherOptions> allMatchers();
 
-/// Fraction of the cell columns of the world's extent that hold a cell.
-double coverageOf(const std::vector<world::CellIndex>& cells, const world::World& world,
+/// Fraction of the cell columns whose centre lies inside the extent that hold a cell.
+double coverageOf(const std::vector<world::CellIndex>& cells, const world::Extent& extent,
                   const world::Grid& grid);
 
 }  // namespace shoal::eval

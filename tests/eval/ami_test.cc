@@ -195,5 +195,40 @@ TEST(AmiTest, StaysExactForTenMillionCells) {
   EXPECT_NEAR(expectedMutualInformation(table) / (9. * 12. / 2e7), 1.0, 1e-5);
 }
 
+// Where sets have thousands of cells in common the sum gives way to a series: against the sum over the whole
+// hypergeometric distribution, in extended precision, on both sides of the change and for lopsided margins.
+TEST(AmiTest, ExpectationAgreesWithTheWholeSumForLargeTables) {
+  const auto byDefinition = [](const Contingency& table) {
+    const auto choose = [](int64_t n, int64_t k) {
+      const auto fact = [](int64_t x) { return std::lgammal(static_cast<long double>(x) + 1); };
+      return fact(n) - fact(k) - fact(n - k);
+    };
+    long double sum = 0;
+    const int64_t total = table.num_cells;
+    for (const int64_t a : table.label_cells) {
+      for (const int64_t b : table.truth_cells) {
+        for (int64_t n = std::max<int64_t>(1, a + b - total); n <= std::min(a, b); ++n) {
+          const long double x = static_cast<long double>(n), t = static_cast<long double>(total);
+          sum += std::exp(choose(a, n) + choose(total - a, b - n) - choose(total, b)) * x / t *
+                 std::log(x * t / (static_cast<long double>(a) * static_cast<long double>(b)));
+        }
+      }
+    }
+    return static_cast<double>(sum);
+  };
+  for (const auto& [labels, truths] : std::vector<std::pair<std::vector<int64_t>, std::vector<int64_t>>>{
+           {{8000, 8200}, {8100, 8100}},
+           {{8400, 8300}, {8350, 8350}},
+           {{199000, 1000}, {150000, 50000}},
+           {{60000, 30000, 9000}, {90000, 8000, 1000}}}) {
+    Contingency table;
+    table.label_cells = labels;
+    table.truth_cells = truths;
+    table.num_cells = std::accumulate(labels.begin(), labels.end(), int64_t{0});
+    const double expected = byDefinition(table);
+    EXPECT_NEAR(expectedMutualInformation(table) / expected, 1.0, 1e-6) << table.num_cells;
+  }
+}
+
 }  // namespace
 }  // namespace shoal::eval

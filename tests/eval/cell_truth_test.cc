@@ -49,6 +49,18 @@ TEST(ProjectedTruthTest, PixelsWithoutDepthDoNotVote) {
   EXPECT_EQ(truth.at({0, 0, 0}), std::nullopt);
 }
 
+TEST(ProjectedTruthTest, AnyIdBut255IsAClass) {
+  ProjectedTruth truth{world::Grid(100.0)};
+  truth.add(frame((cv::Mat_<uint8_t>(1, 4) << 254, 254, 40, 255)));
+  EXPECT_EQ(truth.at({0, 0, 0}), 254);
+}
+
+TEST(ProjectedTruthTest, WhatIsTooFarForACellIsLeftOut) {
+  ProjectedTruth truth{world::Grid(1e-3)};
+  truth.add(frame((cv::Mat_<uint8_t>(1, 1) << 1), 3e9f));
+  EXPECT_EQ(truth.at({0, 0, INT32_MIN}), std::nullopt);
+}
+
 TEST(ProjectedTruthTest, HalvesCountedApartGiveTheWhole) {
   ProjectedTruth a{world::Grid(100.0)}, b{world::Grid(100.0)};
   a.add(frame((cv::Mat_<uint8_t>(1, 3) << 2, 2, 9)));

@@ -51,5 +51,28 @@ TEST(ScoreMatchersTest, TellsMatchersApart) {
   EXPECT_NEAR(scores[2].ami, 1.0, 1e-12);
 }
 
+// A small reef: three robots, whose truth is what all their frames together say.
+TEST(TruthForTest, IsTheProjectionOfEverybodysFrames) {
+  const auto place = world::openPlace("reef:tuning", 5);
+  world::SurveyOptions team{.num_robots = 3, .observations = 2};
+  team.intrinsics = {32, 24, 20.0, 20.0, 15.5, 11.5};
+  team = place->completed(team);
+  const world::Grid grid(team.cell_size_m);
+  ProjectedTruth expected(grid);
+  std::vector<CellIndex> seen;
+  const auto all = place->source(team, 0, true);
+  while (const auto frame = all->next()) {
+    expected.add(*frame);
+    for (int v = 0; v < 24; ++v)
+      for (int u = 0; u < 32; ++u)
+        seen.push_back(grid.cellOf(frame->world_from_camera *
+                                   team.intrinsics.unproject(u, v, double{frame->depth_m.at<float>(v, u)})));
+  }
+  const TruthOfCell truth = truthFor(*place, team, grid);
+  ASSERT_GT(seen.size(), 1000u);
+  for (const CellIndex& cell : seen) ASSERT_EQ(truth(cell), expected.at(cell));
+  EXPECT_EQ(truth({1 << 20, 0, 0}), std::nullopt);
+}
+
 }  // namespace
 }  // namespace shoal::eval
