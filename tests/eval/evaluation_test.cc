@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "shoal/eval/cell_truth.h"
+
 namespace shoal::eval {
 namespace {
 
@@ -54,7 +56,9 @@ TEST(ScoreMatchersTest, TellsMatchersApart) {
 // A small reef: three robots, whose truth is what all their frames together say.
 TEST(TruthForTest, IsTheProjectionOfEverybodysFrames) {
   const auto place = world::openPlace("reef:tuning", 5);
-  world::SurveyOptions team{.num_robots = 3, .observations = 2};
+  world::SurveyOptions team;
+  team.num_robots = 3;
+  team.observations = 2;
   team.intrinsics = {32, 24, 20.0, 20.0, 15.5, 11.5};
   team = place->completed(team);
   const world::Grid grid(team.cell_size_m);
