@@ -12,7 +12,7 @@ namespace {
 // The mean of (n/N) log(N n / (a b)) over the n that two sets of a and b cells have in common when the cells
 // are shuffled. Goes outwards from the mode by the ratio of neighbouring probabilities and divides by their
 // sum, so no factorial appears, and nothing is lost to the size of its logarithm.
-double expectedTerm(int64_t a, int64_t b, int64_t total) {
+double summedTerm(int64_t a, int64_t b, int64_t total) {
   const auto real = [](int64_t x) { return static_cast<double>(x); };
   const auto term = [&](int64_t n) {
     return n == 0 ? 0.0 : real(n) / real(total) * std::log(real(n) / real(a) * (real(total) / real(b)));
@@ -38,6 +38,27 @@ double expectedTerm(int64_t a, int64_t b, int64_t total) {
     sum += weight * term(n - 1);
   }
   return sum / weights;
+}
+
+// The same for sets that have many cells in common: the mean of n log n from the first four central moments m
+// of the hypergeometric distribution, by Taylor's series about its mean u. The next terms are of relative
+// size 1/u^2 of a sum that is itself small against the entropies.
+double momentsTerm(int64_t a_cells, int64_t b_cells, int64_t num_cells) {
+  const auto a = static_cast<double>(a_cells), b = static_cast<double>(b_cells),
+             n = static_cast<double>(num_cells);
+  const double p = a / n, q = 1.0 - p, r = b / n, s = 1.0 - r;
+  const double u = a * r;
+  const double m2 = u * q * s * n / (n - 1.0);
+  const double m3 = m2 * (1.0 - 2.0 * p) * (1.0 - 2.0 * r) * n / (n - 2.0);
+  // Kurtosis of the hypergeometric distribution in the limit of many cells: 3 m2^2 and a term in m2.
+  const double m4 = m2 * m2 * 3.0 + m2 * (1.0 - 6.0 * p * q) * (1.0 - 6.0 * r * s);
+  return (m2 / (2.0 * u) - m3 / (6.0 * u * u) + m4 / (12.0 * u * u * u)) / n;
+}
+
+double expectedTerm(int64_t a, int64_t b, int64_t total) {
+  constexpr double kMany = 4096;
+  const double common = static_cast<double>(a) * static_cast<double>(b) / static_cast<double>(total);
+  return common > kMany ? momentsTerm(a, b, total) : summedTerm(a, b, total);
 }
 
 std::map<int64_t, int64_t> multiplicities(const std::vector<int64_t>& cells) {
