@@ -28,7 +28,8 @@ struct Contingency {
 /// @param label, truth  one id per cell, any numbers.
 /// @throws std::invalid_argument if they differ in length.
 ///
-/// Cost: O(n) where the ids span few numbers (labels x classes within 2^16, rounded up to powers of two), about 1 ns a cell; O(n log n) else.
+/// Cost: O(n) where the ids span few numbers (labels x classes within 2^16, rounded up to powers of two),
+/// about 1 ns a cell; O(n log n) else.
 Contingency contingency(std::span<const int> label, std::span<const int> truth);
 
 }  // namespace shoal::eval

@@ -31,17 +31,24 @@ Explorer::Explorer(const ExplorerOptions& options)
     : options_(options),
       words_(vision::makeWordExtractor(options.profile)),
       grid_(options.cell_size_m),
-      hyperparameters_(hyperparametersOf(options.profile)),
+      hyperparameters_(options.hyperparameters.value_or(hyperparametersOf(options.profile))),
       model_(hyperparameters_, words_->vocabularySize(), options.seed, options.robot) {}
 
 void Explorer::observe(const world::Observation& observation) {
   SHOAL_DEMAND(observation.number > last_observation_);
   Stopwatch watch;
   const world::WordsInCells words = words_->extract(observation, grid_);
-  times_.words_ms = watch.lapMs();
+  const double words_ms = watch.lapMs();
+  learn(words);
+  times_.words_ms = words_ms;
+}
+
+void Explorer::learn(const world::WordsInCells& words) {
+  SHOAL_DEMAND(words.observation > last_observation_);
+  Stopwatch watch;
   model_.observe(words);
-  times_.topics_ms = watch.lapMs();
-  last_observation_ = observation.number;
+  times_ = {.words_ms = 0, .topics_ms = watch.lapMs(), .belief_ms = 0};
+  last_observation_ = words.observation;
   dropped_words_ += words.dropped_words;
 }
 

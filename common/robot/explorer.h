@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "shoal/mapping/local_belief.h"
@@ -17,10 +18,11 @@ namespace shoal::robot {
 /// What makes an explorer. All of it changes what it learns.
 struct ExplorerOptions {
   world::RobotId robot{};
-  std::string profile = "paper";  ///< words and hyper-parameters
-  uint64_t seed = 1;              ///< mission seed
-  double cell_size_m = 0.8;       ///< edge of a cell, > 0
-  int32_t epoch = 0;              ///< grows when the robot has lost its disk
+  std::string profile = "paper";                           ///< words and hyper-parameters
+  uint64_t seed = 1;                                       ///< mission seed
+  double cell_size_m = 0.8;                                ///< edge of a cell, > 0
+  int32_t epoch = 0;                                       ///< grows when the robot has lost its disk
+  std::optional<topics::Hyperparameters> hyperparameters;  ///< other than the profile's, for experiments
 };
 
 /// Milliseconds that the last observation took, by stage.
@@ -40,8 +42,16 @@ class Explorer {
   /// options and of the observations so far.
   void observe(const world::Observation& observation);
 
+  /// The same from the image's words, as words() extracted them with this cell size.
+  void learn(const world::WordsInCells& words);
+
   /// What the robot believes now.
   mapping::LocalBelief belief() const;
+
+  /// Learns from others' topics as well as from its own words: TopicModel::adopt().
+  std::vector<world::TopicId> adopt(const std::vector<topics::AdoptedTopic>& others) {
+    return model_.adopt(others);
+  }
 
   const std::vector<world::WordGroup>& groups() const { return words_->groups(); }
   /// Identifies words and hyper-parameters: only robots with equal fingerprints are comparable.

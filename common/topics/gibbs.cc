@@ -75,6 +75,21 @@ void Gibbs::resample(std::span<Token> tokens, std::span<int32_t> cell_counts,
   }
 }
 
+void Gibbs::addCounts(int32_t slot, std::span<const world::WordCount> words, int sign) {
+  const auto k = static_cast<size_t>(slot);
+  int64_t& count = topic_counts_[k];
+  const bool was_used = count > 0;
+  for (const world::WordCount& w : words) {
+    row(w.word)[k] += sign * w.count;
+    count += sign * w.count;
+    SHOAL_DEMAND(row(w.word)[k] >= 0);
+  }
+  inverse_[k] = 1.0 / (static_cast<double>(count) + beta_sum_);
+  inverse_less_[k] = 1.0 / (static_cast<double>(count - 1) + beta_sum_);
+  if (!was_used && count > 0) slots_.open(slot);
+  if (was_used && count == 0) slots_.close(slot);
+}
+
 std::span<const int32_t> Gibbs::wordCounts(int32_t word) const {
   return std::span(word_counts_)
       .subspan(static_cast<size_t>(word) * static_cast<size_t>(stride_), static_cast<size_t>(stride_));

@@ -52,6 +52,10 @@ class Gibbs {
   void resample(std::span<Token> tokens, std::span<int32_t> cell_counts,
                 std::span<const double> neighbor_counts, Random random);
 
+  /// Adds counts that belong to no token (`sign` 1) or takes them away again (-1). Opens and closes the slot
+  /// as words do.
+  void addCounts(int32_t slot, std::span<const world::WordCount> words, int sign);
+
   int32_t vocabularySize() const { return vocabulary_size_; }
   const TopicSlots& slots() const { return slots_; }
   void nameTopics(world::Timestamp now) { slots_.nameTopics(now); }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "shoal/topics/schedule.h"
 
@@ -69,6 +70,44 @@ void TopicModel::refine(int64_t resamples) {
   }
   overrun_ = num_resamples_ - start - budget;
   gibbs_.nameTopics(time_);
+}
+
+std::vector<world::TopicId> TopicModel::adopt(const std::vector<AdoptedTopic>& others) {
+  std::vector<int32_t> slots;
+  for (const AdoptedTopic& topic : others) {
+    const bool ascends = std::ranges::adjacent_find(topic.words, std::ranges::greater_equal{},
+                                                    &world::WordCount::word) == topic.words.end();
+    if (!ascends || (!topic.words.empty() &&
+                     (topic.words.front().word < 0 || topic.words.back().word >= gibbs_.vocabularySize()))) {
+      throw std::invalid_argument("words of an adopted topic must ascend within the vocabulary");
+    }
+    slots.push_back(topic.own ? slotOf(*topic.own) : -1);
+  }
+  // What was adopted goes last, so that a topic that is adopted again never closes in between.
+  std::vector<Adopted> former = std::exchange(adopted_, {});
+  for (size_t i = 0; i < others.size(); ++i) {
+    int32_t& slot = slots[i];
+    if (others[i].words.empty()) continue;
+    if (slot < 0 && gibbs_.slots().canOpen() && gibbs_.slots().firstClosed() < gibbs_.slots().size()) {
+      slot = gibbs_.slots().firstClosed();
+    }
+    if (slot < 0) continue;
+    gibbs_.addCounts(slot, others[i].words, 1);
+    adopted_.push_back({slot, others[i].words});
+  }
+  for (const Adopted& topic : former) gibbs_.addCounts(topic.slot, topic.words, -1);
+  gibbs_.nameTopics(time_);
+  std::vector<world::TopicId> ids;
+  for (const int32_t slot : slots) ids.push_back(slot < 0 ? world::TopicId{-1} : gibbs_.slots().id(slot));
+  return ids;
+}
+
+int32_t TopicModel::slotOf(world::TopicId id) const {
+  const TopicSlots& slots = gibbs_.slots();
+  for (int32_t k = 0; k < slots.end(); ++k) {
+    if (slots.isOpen(k) && slots.id(k) == id) return k;
+  }
+  throw std::invalid_argument("this robot has no topic " + std::to_string(number(id)));
 }
 
 Snapshot TopicModel::snapshot() const {
@@ -152,13 +191,24 @@ std::vector<TopicCounts> TopicModel::topics() const {
       if (counts[k] > 0) by_slot[k].words.push_back({w, counts[k]});
     }
   }
+  for (const Adopted& adopted : adopted_) {  // not this robot's own
+    std::vector<world::WordCount>& words = by_slot[static_cast<size_t>(adopted.slot)].words;
+    auto word = words.begin();
+    for (const world::WordCount& other : adopted.words) {
+      word = std::lower_bound(word, words.end(), other.word,
+                              [](const world::WordCount& w, int32_t id) { return w.word < id; });
+      word->count -= other.count;
+    }
+  }
   std::vector<TopicCounts> topics;
   for (int32_t k = 0; k < slots.end(); ++k) {
     if (!slots.isOpen(k)) continue;
-    TopicCounts& topic = topics.emplace_back(std::move(by_slot[static_cast<size_t>(k)]));
+    TopicCounts topic = std::move(by_slot[static_cast<size_t>(k)]);
+    std::erase_if(topic.words, [](const world::WordCount& w) { return w.count == 0; });
     topic.id = slots.id(k);
     topic.created = slots.created(k);
-    topic.weight = gibbs_.topicCount(k);
+    for (const world::WordCount& w : topic.words) topic.weight += w.count;
+    if (topic.weight > 0) topics.push_back(std::move(topic));
   }
   std::ranges::sort(topics, {}, &TopicCounts::id);
   return topics;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -28,6 +29,12 @@ struct CellLabel {
   float certainty = 0;           ///< in [0, 1], see TopicModel::snapshot()
   int32_t seen_observation = 0;  ///< last image that put words here
   world::Timestamp seen;
+};
+
+/// What others know of a topic, for TopicModel::adopt().
+struct AdoptedTopic {
+  std::optional<world::TopicId> own;    ///< the topic of this robot that it is; none: it is new here
+  std::vector<world::WordCount> words;  ///< the others' counts, ascending by word
 };
 
 /// What one robot's model says at one moment.
@@ -72,6 +79,14 @@ class TopicModel {
   /// @throws std::invalid_argument if resamples < 0.
   void refine(int64_t resamples);
 
+  /// Takes over what other robots know: their counts are added to this robot's in the conditional, in place
+  /// of those adopted before. Topics that are new here get a slot and an id of their own while there are free
+  /// slots, and are left out otherwise. snapshot() goes on telling this robot's own counts.
+  /// @returns the id of each topic here, in order; -1 where it was left out.
+  /// @throws std::invalid_argument for an `own` that is not an open topic, or words out of order or range.
+  /// Source: K. Doherty, G. Flaspohler, N. Roy, Y. Girdhar, ICRA 2018: merge and redistribute.
+  std::vector<world::TopicId> adopt(const std::vector<AdoptedTopic>& others);
+
   /// Topics as exact counts, every cell with its label.
   ///
   /// The certainty of a label k is the share of the cell's neighbourhood posterior that k holds,
@@ -96,6 +111,12 @@ class TopicModel {
   CellLabel label(int32_t cell, std::span<double> neighbor_counts) const;
   std::vector<TopicCounts> topics() const;
 
+  struct Adopted {
+    int32_t slot;
+    std::vector<world::WordCount> words;
+  };
+  int32_t slotOf(world::TopicId id) const;
+
   const Hyperparameters hyperparameters_;
   const uint64_t seed_;
   const uint64_t robot_;
@@ -104,6 +125,7 @@ class TopicModel {
   std::vector<Cell> cells_;           // by number, as in neighborhood_
   std::vector<int32_t> cell_counts_;  // n_ck, one row of gibbs_.stride() a cell
   std::vector<double> neighbor_counts_;
+  std::vector<Adopted> adopted_;  // in the count tables, not this robot's own
 
   std::vector<int32_t> latest_;  // cells of the latest observation
   int32_t observation_ = -1;     // its number

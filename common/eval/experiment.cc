@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "shoal/eval/experiment.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <span>
+
+#include "shoal/eval/merging_team.h"
+#include "shoal/eval/topic_tally.h"
+#include "shoal/random.h"
+
+namespace shoal::eval {
+namespace {
+
+constexpr uint64_t kOrderStream = 0x6f72646572;  // "order"
+
+// Beliefs of every robot at every checkpoint: [robot][checkpoint].
+using Beliefs = std::vector<std::vector<mapping::LocalBelief>>;
+
+Beliefs learnAll(const TeamWords& words, const LearningOptions& learning,
+                 const std::vector<int32_t>& checkpoints) {
+  Beliefs beliefs;
+  for (size_t i = 0; i < words.robots.size(); ++i) {
+    beliefs.push_back(learn(words.robots[i], world::RobotId{static_cast<int32_t>(i)}, words.cell_size_m,
+                            learning, checkpoints));
+  }
+  return beliefs;
+}
+
+std::vector<mapping::LocalBelief> pick(const Beliefs& beliefs, std::span<const size_t> robots,
+                                       size_t checkpoint) {
+  std::vector<mapping::LocalBelief> team;
+  for (const size_t robot : robots) team.push_back(beliefs[robot][checkpoint]);
+  return team;
+}
+
+std::vector<Score> scoreAll(const Stacked& team, const TeamTally& counted,
+                            const std::vector<matching::MatcherOptions>& matchers) {
+  std::vector<Score> scores;
+  for (const matching::MatcherOptions& m : matchers) scores.push_back(scoreMatcher(team, counted, m));
+  return scores;
+}
+
+Point point(int32_t at, const std::vector<mapping::LocalBelief>& team, const TruthOfCell& truth,
+            const std::vector<matching::MatcherOptions>& matchers) {
+  const Stacked stacked = stackTeam(team);
+  const TeamTally counted = tally(stacked.beliefs, truth, FusionRule::kNewestWins);
+  Point result{.at = at, .ami = {}};
+  for (const Score& s : scoreAll(stacked, counted, matchers)) result.ami.push_back(s.ami);
+  return result;
+}
+
+Score scoreAlone(const mapping::LocalBelief& belief, const TruthOfCell& truth) {
+  const TeamTally counted = tally(std::span(&belief, 1), truth, FusionRule::kNewestWins);
+  std::vector<int> own(counted.topics.size());
+  std::iota(own.begin(), own.end(), 0);
+  return score(counted, own);
+}
+
+std::vector<size_t> shuffled(size_t count, uint64_t seed) {
+  std::vector<size_t> order(count);
+  std::iota(order.begin(), order.end(), size_t{0});
+  Random random(seed, kOrderStream);
+  for (size_t i = count; i > 1; --i) std::swap(order[i - 1], order[random.below(i)]);
+  return order;
+}
+
+}  // namespace
+
+Repeat runRepeat(const TeamWords& words, const RepeatOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  const TruthOfCell truth = words.truthOfCell();
+  size_t images = 0;
+  for (const auto& robot : words.robots) images = std::max(images, robot.size());
+  std::vector<int32_t> checkpoints;
+  for (int tenth = 1; tenth <= 10; ++tenth) {
+    const auto at = static_cast<int32_t>((images * static_cast<size_t>(tenth) + 9) / 10);
+    if (checkpoints.empty() || checkpoints.back() < at) checkpoints.push_back(at);
+  }
+  const Beliefs beliefs = learnAll(words, options.learning, checkpoints);
+  const size_t last = checkpoints.size() - 1;
+  std::vector<size_t> everyone(words.robots.size());
+  std::iota(everyone.begin(), everyone.end(), size_t{0});
+
+  Repeat result;
+  {
+    const Stacked team = stackTeam(pick(beliefs, everyone, last));
+    const TeamTally newest = tally(team.beliefs, truth, FusionRule::kNewestWins);
+    result.newest = scoreAll(team, newest, options.matchers);
+    result.concatenated =
+        scoreAll(team, tally(team.beliefs, truth, FusionRule::kConcatenate), options.matchers);
+    result.oracle = score(newest, majorityClasses(newest));
+    result.purity = purity(newest);
+  }
+  for (size_t c = 0; c < checkpoints.size(); ++c) {
+    result.by_images.push_back(point(checkpoints[c], pick(beliefs, everyone, c), truth, options.matchers));
+  }
+
+  std::vector<int32_t> parts;  // the single robot's images after 1, 2, ... shares
+  const auto first = static_cast<size_t>(options.repeat) % words.robots.size();
+  for (size_t i = 0; i < words.robots.size(); ++i) {
+    const auto more = static_cast<int32_t>(words.robots[(first + i) % words.robots.size()].size());
+    parts.push_back((parts.empty() ? 0 : parts.back()) + more);
+  }
+  const auto alone =
+      learn(words.inOneRow(first), world::RobotId{0}, words.cell_size_m, options.learning, parts);
+  result.single = scoreAlone(alone.back(), truth);
+
+  const std::vector<size_t> order = shuffled(words.robots.size(), options.learning.seed);
+  for (size_t n = 1; n <= order.size(); ++n) {
+    result.by_robots.push_back(point(static_cast<int32_t>(n), pick(beliefs, std::span(order).first(n), last),
+                                     truth, options.matchers));
+    result.by_robots.back().single = scoreAlone(alone[n - 1], truth).ami;
+  }
+  if (options.exchange_every > 0) {
+    const MergedTeam merged = learnByMerging(words, options.learning, options.exchange_every);
+    result.merged = merged.score;
+    result.merged_sent = merged.sent;
+    result.merged_received = merged.received;
+  }
+  if (options.measure_bytes) {
+    const auto team = static_cast<double>(words.robots.size());
+    for (size_t i = 0; i < words.robots.size(); ++i) {
+      const SentBytes sent = bytesSent(words.robots[i], world::RobotId{static_cast<int32_t>(i)},
+                                       words.cell_size_m, options.learning);
+      result.topics_bytes += static_cast<double>(sent.topics) / team;
+      result.map_bytes += static_cast<double>(sent.map) / team;
+    }
+  }
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+std::vector<Score> scoreTeam(const TeamWords& words, const LearningOptions& learning,
+                             const std::vector<matching::MatcherOptions>& matchers) {
+  std::vector<mapping::LocalBelief> team;
+  for (size_t i = 0; i < words.robots.size(); ++i) {
+    const auto all = static_cast<int32_t>(words.robots[i].size());
+    team.push_back(learn(words.robots[i], world::RobotId{static_cast<int32_t>(i)}, words.cell_size_m,
+                         learning, std::span(&all, 1))
+                       .front());
+  }
+  const Stacked stacked = stackTeam(std::move(team));
+  return scoreAll(stacked, tally(stacked.beliefs, words.truthOfCell(), FusionRule::kNewestWins), matchers);
+}
+
+std::vector<matching::MatcherOptions> tableMatchers() {
+  std::vector<matching::MatcherOptions> matchers = {
+      {.matcher = "id", .similarity = "cosine"},     {.matcher = "hungarian", .similarity = "l1"},
+      {.matcher = "hungarian", .similarity = "l2"},  {.matcher = "hungarian", .similarity = "cosine"},
+      {.matcher = "clear", .similarity = "overlap"}, {.matcher = "clear", .similarity = "cosine"},
+  };
+  return matchers;
+}
+
+std::string nameOf(const matching::MatcherOptions& m) {
+  if (m.matcher == "id") return "ID";
+  if (m.matcher == "hungarian") return "Hungarian, " + m.similarity;
+  if (m.matcher != "clear") return m.matcher;
+  char text[64];
+  std::snprintf(text, sizeof text, "CLEAR, %s %.2f", m.similarity.c_str(), m.sigma);
+  return text;
+}
+
+void to_json(nlohmann::json& json, const Score& s) {
+  json = {{"ami", s.ami},       {"nmi", s.nmi},       {"cells", s.cells},
+          {"scored", s.scored}, {"labels", s.labels}, {"classes", s.classes}};
+}
+
+void from_json(const nlohmann::json& json, Score& s) {
+  json.at("ami").get_to(s.ami);
+  json.at("nmi").get_to(s.nmi);
+  json.at("cells").get_to(s.cells);
+  json.at("scored").get_to(s.scored);
+  json.at("labels").get_to(s.labels);
+  json.at("classes").get_to(s.classes);
+}
+
+namespace {
+
+nlohmann::json toJson(const std::vector<Point>& points) {
+  nlohmann::json all = nlohmann::json::array();
+  for (const Point& p : points) all.push_back({{"at", p.at}, {"ami", p.ami}, {"single", p.single}});
+  return all;
+}
+
+std::vector<Point> pointsOf(const nlohmann::json& json) {
+  std::vector<Point> points;
+  for (const nlohmann::json& p : json) {
+    points.push_back(
+        {p.at("at").get<int32_t>(), p.at("ami").get<std::vector<double>>(), p.at("single").get<double>()});
+  }
+  return points;
+}
+
+}  // namespace
+
+void to_json(nlohmann::json& json, const Repeat& r) {
+  json = {{"newest", r.newest},
+          {"concatenated", r.concatenated},
+          {"oracle", r.oracle},
+          {"single", r.single},
+          {"merged", r.merged},
+          {"merged_sent", r.merged_sent},
+          {"merged_received", r.merged_received},
+          {"purity", r.purity},
+          {"topics_bytes", r.topics_bytes},
+          {"map_bytes", r.map_bytes},
+          {"by_robots", toJson(r.by_robots)},
+          {"by_images", toJson(r.by_images)},
+          {"seconds", r.seconds}};
+}
+
+void from_json(const nlohmann::json& json, Repeat& r) {
+  json.at("newest").get_to(r.newest);
+  json.at("concatenated").get_to(r.concatenated);
+  json.at("oracle").get_to(r.oracle);
+  json.at("single").get_to(r.single);
+  json.at("merged").get_to(r.merged);
+  json.at("merged_sent").get_to(r.merged_sent);
+  json.at("merged_received").get_to(r.merged_received);
+  json.at("purity").get_to(r.purity);
+  json.at("topics_bytes").get_to(r.topics_bytes);
+  json.at("map_bytes").get_to(r.map_bytes);
+  r.by_robots = pointsOf(json.at("by_robots"));
+  r.by_images = pointsOf(json.at("by_images"));
+  json.at("seconds").get_to(r.seconds);
+}
+
+}  // namespace shoal::eval

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "shoal/eval/team_words.h"
+#include "shoal/mapping/local_belief.h"
+#include "shoal/matching/descriptors.h"
+#include "shoal/matching/matcher.h"
+#include "shoal/topics/hyperparameters.h"
+
+namespace shoal::eval {
+
+struct TeamTally;
+
+/// How robots learn from words in an experiment: as robot_agent does, in this process.
+struct LearningOptions {
+  std::string profile = "paper";
+  uint64_t seed = 1;                                       ///< mission seed
+  std::optional<topics::Hyperparameters> hyperparameters;  ///< other than the profile's
+};
+
+/// What one robot believes after `checkpoints[i]` images (ascending; more than there are = all), one belief a
+/// checkpoint. The last one equals the map.csv and topics.json of the robot_agent that flew the same images.
+std::vector<mapping::LocalBelief> learn(const std::vector<world::WordsInCells>& images, world::RobotId robot,
+                                        double cell_size_m, const LearningOptions& options,
+                                        std::span<const int32_t> checkpoints);
+
+/// What a robot sends in a mission without losses: the changes of its belief after every fifth image and the
+/// last, as robot_agent publishes them.
+struct SentBytes {
+  int64_t topics = 0, map = 0;  ///< bytes on the wire, all headers counted; map = labels and certainties
+  int64_t datagrams = 0;
+};
+SentBytes bytesSent(const std::vector<world::WordsInCells>& images, world::RobotId robot, double cell_size_m,
+                    const LearningOptions& options);
+
+/// Topics in the order of `team`, as a fusion node that has heard all of them stacks them: `team[i]` is taken
+/// to be robot i. Only topics that label cells.
+struct Stacked {
+  matching::DescriptorSet descriptors;
+  std::vector<mapping::LocalBelief> beliefs;  ///< the team, numbered from 0
+};
+Stacked stackTeam(std::vector<mapping::LocalBelief> team);
+
+/// Scores one matcher on a team whose tally was taken from stackTeam().beliefs.
+Score scoreMatcher(const Stacked& team, const TeamTally& tally, const matching::MatcherOptions& matcher);
+
+}  // namespace shoal::eval
