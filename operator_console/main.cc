@@ -29,6 +29,7 @@ int main(int argc, char** argv) {
   console::addLaunchCommand(app, chosen);
   console::addMatchCommand(app, chosen);
   console::addEvaluateCommand(app, chosen);
+  console::addReproduceCommand(app, chosen);
   console::addQuestionCommands(app, chosen);
   console::addUnbuiltCommands(app, chosen);
   try {

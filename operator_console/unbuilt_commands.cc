@@ -7,7 +7,7 @@
 namespace shoal::console {
 
 void addUnbuiltCommands(CLI::App& app, Action& chosen) {
-  for (const std::string name : {"replay", "verify", "reproduce", "serve", "spy", "doctor", "area", "why",
+  for (const std::string name : {"replay", "verify", "serve", "spy", "doctor", "area", "why",
                                  "name", "link", "unlink", "exclude", "undo", "tune"}) {
     CLI::App* command =
         app.add_subcommand(name, "not built yet")->group("")->prefix_command()->fallthrough(false);
