@@ -35,7 +35,7 @@ void evaluate(const Flags& flags) {
     }
   }();
   const world::SurveyOptions team = teamOf(summary);
-  const auto place = world::openPlace(flags.world, summary.at("seed").get<uint64_t>());
+  const auto place = world::openPlace(flags.world, summary.at("seed").get<uint64_t>(), cameraOf(summary));
   std::vector<matching::MatcherOptions> matchers = eval::allMatchers();
   if (flags.matcher != "all") {
     matchers = {{.matcher = flags.matcher, .similarity = matching::usualSimilarity(flags.matcher)}};
@@ -49,7 +49,9 @@ void evaluate(const Flags& flags) {
   if (flags.json) {
     std::cout << result.json().dump(2) << '\n';
   } else {
-    std::cout << scoreTable(result);
+    std::cout << (place->classes().empty()
+                      ? flags.world + " has no labels: there is nothing to score against\n"
+                      : scoreTable(result));
   }
 }
 
@@ -72,9 +74,16 @@ Json Evaluation::json() const {
   return result;
 }
 
+std::optional<world::Camera> cameraOf(const Json& summary) {
+  const auto camera = summary.find("camera");
+  if (camera == summary.end() || camera->is_null()) return std::nullopt;
+  return world::parseCamera(camera->dump(), "\"camera\" in summary.json");
+}
+
 world::SurveyOptions teamOf(const Json& summary) {
   try {
     world::SurveyOptions team;
+    if (const auto camera = cameraOf(summary)) team.intrinsics = camera->intrinsics;
     team.num_robots = static_cast<int>(summary.at("robots").size());
     team.observations = summary.at("observations");
     team.cell_size_m = summary.at("cell_size_m");
@@ -99,7 +108,7 @@ Evaluation evaluateRun(const std::string& dir, const world::Place& place, const 
   std::vector<world::CellIndex> cells;
   for (const mapping::LocalBelief& belief : run.robots)
     for (const mapping::BelievedCell& c : belief.cells) cells.push_back(c.cell);
-  if (const auto extent = place.extent()) result.coverage = eval::coverageOf(cells, *extent, grid);
+  result.coverage = eval::coverageOf(cells, place, team, grid);
   return result;
 }
 

@@ -51,13 +51,13 @@ Json nodesOf(const RunInfo& run) {
 
 std::string finishRun(const RunInfo& run) {
   const LaunchOptions& options = run.options;
-  const auto place = world::openPlace(options.world, options.seed);
+  const auto place = openPlace(options);
   const world::Grid grid(options.cell_size_m);
   const mapping::GlobalMap map = mapping::readGlobalMap(options.out, grid);
   const Evaluation evaluation = evaluateRun(options.out, *place, surveyOf(options), eval::allMatchers());
   const bool has_truth = !place->classes().empty();
-  const std::string title =
-      fmt::format("{}, {} robots, {} labels", place->name(), options.num_robots, map.labels.size());
+  const std::string title = fmt::format("{}, {} robot{}, {} labels", place->name(), options.num_robots,
+                                        options.num_robots == 1 ? "" : "s", map.labels.size());
   mapping::writeFileAtomically(
       options.out + "/global_map.png",
       encodePng(render(map, grid, title, has_truth ? std::optional(evaluation.truth) : std::nullopt)));
@@ -74,6 +74,13 @@ std::string finishRun(const RunInfo& run) {
       {"cell_size_m", options.cell_size_m},
       {"altitude_m", options.altitude_m},
       {"frame_period_s", options.frame_period_s},
+      {"sensors",
+       {{"exposure", options.sensors.exposure},
+        {"color_cast", options.sensors.color_cast},
+        {"pose_drift", options.sensors.pose_drift},
+        {"depth_noise", options.sensors.depth_noise},
+        {"depth_holes", options.sensors.depth_holes}}},
+      {"camera", options.camera.empty() ? Json() : Json::parse(mapping::readFile(options.camera))},
       {"robots", robots},
       {"observations", options.observations},
       {"bytes", bytesByClass(run)},

@@ -23,9 +23,12 @@ void addLaunchCommand(CLI::App& app, Action& chosen) {
   CLI::App* command = app.add_subcommand("launch", "fly a mission on this computer and end when all agree");
   const auto flags = std::make_shared<Flags>();
   LaunchOptions& o = flags->launch;
-  command->add_option("--world", o.world, "reef:sparse, reef:varied, reef:tuning or a world folder");
-  command->add_option("--robots", o.num_robots, "how many share the area")->capture_default_str();
-  command->add_option("--observations", o.observations, "images per robot, 0 = as many as cover its share")
+  command->add_option("--world", o.world,
+                      "reef:sparse, reef:varied, reef:tuning, a world folder, or a recording");
+  command->add_option("--robots", o.num_robots, "how many fly (default: 12, or as many as were recorded)");
+  command
+      ->add_option("--observations", o.observations,
+                   "images per robot, 0 = as many as cover its share, or all that were recorded")
       ->capture_default_str();
   command->add_option("--seed", o.seed, "decides all randomness")->capture_default_str();
   command
@@ -42,8 +45,23 @@ void addLaunchCommand(CLI::App& app, Action& chosen) {
       ->capture_default_str();
   command->add_option("--profile", o.profile, "words and hyper-parameters: paper")->capture_default_str();
   command->add_option("--cell-size-m", o.cell_size_m, "edge of a cell, m (default: the world's)");
-  command->add_option("--altitude-m", o.altitude_m, "camera height, m (default: native resolution)");
+  command->add_option("--camera", o.camera, "camera.json with the intrinsics (default: the world's usual)");
+  command->add_option(
+      "--altitude-m", o.altitude_m,
+      "camera height, m (default: native resolution); of a recording without depth, above a flat floor");
   command->add_option("--frame-period-s", o.frame_period_s, "mission seconds between images")
+      ->capture_default_str();
+  command->add_option("--exposure", o.sensors.exposure, "robots differ in brightness by up to 1 + this")
+      ->capture_default_str();
+  command->add_option("--color-cast", o.sensors.color_cast, "robots differ in each colour by up to this part")
+      ->capture_default_str();
+  command
+      ->add_option("--pose-drift", o.sensors.pose_drift,
+                   "dead reckoning's error, m per square root of a metre flown")
+      ->capture_default_str();
+  command->add_option("--depth-noise", o.sensors.depth_noise, "standard deviation of depth over depth")
+      ->capture_default_str();
+  command->add_option("--depth-holes", o.sensors.depth_holes, "part of the depth that is missing")
       ->capture_default_str();
   command->add_option("--out", o.out, "folder for the mission's files");
   command->add_flag("--overwrite", o.overwrite, "replace a finished mission in --out");

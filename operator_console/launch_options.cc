@@ -6,7 +6,6 @@
 
 #include "fusion_node/process.h"
 #include "shoal/comms/lcm_url.h"
-#include "shoal/world/place.h"
 
 namespace shoal::console {
 namespace {
@@ -22,8 +21,9 @@ void demandPositive(const std::string& flag, double value) {
 void check(const LaunchOptions& options) {
   if (options.world.empty()) throw std::invalid_argument("--world is missing, as in --world reef:sparse");
   if (options.out.empty()) throw std::invalid_argument("--out is missing: a folder for the mission's files");
-  if (options.num_robots < 1 || options.num_robots > 256) {
-    throw std::invalid_argument("--robots must lie in 1 to 256, got " + std::to_string(options.num_robots));
+  if (options.num_robots < 0 || options.num_robots > 256) {
+    throw std::invalid_argument("--robots must lie in 1 to 256, or be 0 (as many as there are), got " +
+                                std::to_string(options.num_robots));
   }
   if (options.observations < 0) {
     throw std::invalid_argument("--observations must be 0 (as many as cover the area) or more, got " +
@@ -52,12 +52,14 @@ void check(const LaunchOptions& options) {
   demandPositive("--settle-timeout-s", options.settle_timeout_s);
   if (options.cell_size_m != 0) demandPositive("--cell-size-m", options.cell_size_m);
   if (options.altitude_m != 0) demandPositive("--altitude-m", options.altitude_m);
+  world::checkSensors(options.sensors);
   if (options.mission < 0) throw std::invalid_argument("--mission must be a positive number");
   if (!options.lcm_url.empty()) comms::parseUrl(options.lcm_url);
 }
 
 LaunchOptions completed(LaunchOptions options) {
-  const auto place = world::openPlace(options.world, options.seed);
+  const auto place = openPlace(options);
+  if (options.num_robots == 0) options.num_robots = place->isRecorded() ? place->maxRobots() : 12;
   const world::SurveyOptions team = place->completed(surveyOf(options));
   options.observations = team.observations;
   options.cell_size_m = team.cell_size_m;
@@ -65,13 +67,21 @@ LaunchOptions completed(LaunchOptions options) {
   return options;
 }
 
+std::unique_ptr<world::Place> openPlace(const LaunchOptions& options) {
+  return world::openPlace(
+      options.world, options.seed,
+      options.camera.empty() ? std::nullopt : std::optional(world::readCamera(options.camera)));
+}
+
 world::SurveyOptions surveyOf(const LaunchOptions& options) {
   world::SurveyOptions team;
+  if (!options.camera.empty()) team.intrinsics = world::readCamera(options.camera).intrinsics;
   team.num_robots = options.num_robots;
   team.observations = options.observations;
   team.cell_size_m = options.cell_size_m;
   team.altitude_m = options.altitude_m;
   team.frame_period_s = options.frame_period_s;
+  team.sensors = options.sensors;
   return team;
 }
 

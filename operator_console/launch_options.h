@@ -2,18 +2,19 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 
 #include "shoal/matching/matcher.h"
-#include "shoal/world/survey.h"
+#include "shoal/world/place.h"
 
 namespace shoal::console {
 
 /// A mission as `launch` flies it.
 struct LaunchOptions {
-  std::string world;           ///< reef:sparse, reef:varied, reef:tuning or a world folder
-  int num_robots = 12;         ///< in [1, 256]
-  int32_t observations = 250;  ///< per robot, 0 = as many as cover the share
+  std::string world;           ///< reef:sparse, reef:varied, reef:tuning, a world folder or a recording
+  int num_robots = 0;          ///< in [1, 256]; 0 = 12 over a world, as many as were recorded
+  int32_t observations = 250;  ///< per robot, 0 = as many as cover the share, or all
   uint64_t seed = 1;
   int64_t budget = 2000;  ///< bytes per second of mission time, each; 0 = unlimited
   std::string link = "clean";
@@ -23,6 +24,8 @@ struct LaunchOptions {
   double cell_size_m = 0;  ///< 0 = the world's own
   double altitude_m = 0;   ///< 0 = native resolution
   double frame_period_s = 1;
+  world::SensorOptions sensors;
+  std::string camera;             ///< camera.json that says how the camera sees; empty = as usual there
   std::string out;                ///< folder
   bool overwrite = false;         ///< a finished mission in `out` may go
   bool single = false;            ///< fly one robot over the whole area too
@@ -36,11 +39,15 @@ struct LaunchOptions {
 /// @throws std::invalid_argument naming the option that is wrong or not built yet, and what would be right.
 void check(const LaunchOptions& options);
 
-/// The same with the world's cell size and the altitude of native resolution where they were left open.
-/// @throws std::invalid_argument when the world cannot be opened.
+/// The same with the number of robots, the cell size and the altitude that the place says where they were
+/// left open.
+/// @throws std::invalid_argument when the place cannot be opened, or cannot be flown like that.
 LaunchOptions completed(LaunchOptions options);
 
-/// How the team flies.
+/// Where the team flies. @throws std::invalid_argument when it cannot be opened.
+std::unique_ptr<world::Place> openPlace(const LaunchOptions& options);
+
+/// How the team flies. @throws std::invalid_argument when the camera's file is wrong.
 world::SurveyOptions surveyOf(const LaunchOptions& options);
 
 }  // namespace shoal::console

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <charconv>
+#include <utility>
 
 #include "shoal/comms/lcm_url.h"
 #include "shoal/demand.h"
@@ -29,15 +30,25 @@ void append(std::vector<std::string>& arguments, const std::vector<std::string>&
 
 // What decides what is seen and learnt: the same for a robot of the team and the one that flies alone.
 std::vector<std::string> flightArguments(const LaunchOptions& options) {
-  return {"--source",         options.world,
-          "--robots",         std::to_string(options.num_robots),
-          "--observations",   std::to_string(options.observations),
-          "--seed",           std::to_string(options.seed),
-          "--profile",        options.profile,
-          "--cell-size-m",    text(options.cell_size_m),
-          "--altitude-m",     text(options.altitude_m),
-          "--frame-period-s", text(options.frame_period_s),
-          "--log-level",      options.log_level};
+  std::vector<std::string> arguments = {"--source",         options.world,
+                                        "--robots",         std::to_string(options.num_robots),
+                                        "--observations",   std::to_string(options.observations),
+                                        "--seed",           std::to_string(options.seed),
+                                        "--profile",        options.profile,
+                                        "--cell-size-m",    text(options.cell_size_m),
+                                        "--frame-period-s", text(options.frame_period_s),
+                                        "--log-level",      options.log_level};
+  if (options.altitude_m > 0) append(arguments, {"--altitude-m", text(options.altitude_m)});
+  const world::SensorOptions& sensors = options.sensors;
+  for (const auto& [flag, value] : {std::pair("--exposure", sensors.exposure),
+                                    {"--color-cast", sensors.color_cast},
+                                    {"--pose-drift", sensors.pose_drift},
+                                    {"--depth-noise", sensors.depth_noise},
+                                    {"--depth-holes", sensors.depth_holes}}) {
+    if (value != 0) append(arguments, {flag, text(value)});
+  }
+  if (!options.camera.empty()) append(arguments, {"--camera", options.camera});
+  return arguments;
 }
 
 std::vector<std::string> linkArguments(const LaunchOptions& options) {

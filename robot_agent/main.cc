@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <exception>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 
 #include <spdlog/spdlog.h>
@@ -21,11 +22,16 @@ using namespace shoal;  // NOLINT: a main file
 struct Flags {
   std::string robot = "R00", source, url = comms::kDefaultUrl, rate = "1", mission = "shoal",
               log_level = "info";
-  std::string sigma = "0.75", checkpoint;
+  std::string sigma = "0.75", checkpoint, camera;
   bool single = false;
   world::SurveyOptions survey;
   robot_agent::AgentOptions agent;
 };
+
+void sayTroubles(const world::ObservationSource& source) {
+  if (const std::string troubles = source.troubles(); !troubles.empty())
+    spdlog::warn("left out: {}", troubles);
+}
 
 int run(Flags flags) {
   robot_agent::AgentOptions& options = flags.agent;
@@ -41,18 +47,25 @@ int run(Flags flags) {
   options.rate = fusion_node::parseRate(flags.rate);
   options.matcher.sigma = fusion_node::parseSigma(flags.sigma);
 
-  const auto place = world::openPlace(flags.source, options.explorer.seed);
+  std::optional<world::Camera> camera;
+  if (!flags.camera.empty()) {
+    camera = world::readCamera(flags.camera);
+    flags.survey.intrinsics = camera->intrinsics;
+  }
+  const auto place = world::openPlace(flags.source, options.explorer.seed, camera);
   const world::SurveyOptions team = place->completed(flags.survey);
   options.explorer.cell_size_m = team.cell_size_m;
   const auto source = place->source(team, number(*id), flags.single);
   if (flags.single) {
     robot_agent::runAlone(options, *source);
+    sayTroubles(*source);
     return 0;
   }
   comms::LcmBus bus(flags.url);
   spdlog::info("{} flies {} observations over {}, mission {}, on {}", flags.robot,
                source->numObservations().value_or(0), place->name(), options.mission, bus.url());
   robot_agent::Agent(options, *source, bus).run();
+  sayTroubles(*source);
   return 0;
 }
 
@@ -66,7 +79,8 @@ int main(int argc, char** argv) {
   app.set_config("--config", "", "mission.toml: any of these flags");
   app.allow_config_extras(CLI::config_extras_mode::ignore_all);  // the file serves other programs too
   app.add_option("--robot", f.robot, "R00, R01, ...")->capture_default_str();
-  app.add_option("--source", f.source, "reef:sparse, reef:varied, reef:tuning, or a world folder")
+  app.add_option("--source", f.source,
+                 "reef:sparse, reef:varied, reef:tuning, a world folder, or a recording")
       ->required();
   app.add_option("--robots", f.survey.num_robots, "robots that share the area; robot k flies share k")
       ->check(CLI::Range(1, 10000))
@@ -88,10 +102,25 @@ int main(int argc, char** argv) {
   app.add_option("--rate", f.rate, "mission seconds per wall second: 1, 10, or max")->capture_default_str();
   app.add_option("--cell-size-m", f.survey.cell_size_m, "edge of a cell, m (default: the world's)")
       ->check(CLI::PositiveNumber);
-  app.add_option("--altitude-m", f.survey.altitude_m, "camera height, m (default: native resolution)")
+  app.add_option(
+         "--altitude-m", f.survey.altitude_m,
+         "camera height, m (default: native resolution); of a recording without depth, above a flat floor")
       ->check(CLI::PositiveNumber);
+  app.add_option("--camera", f.camera, "camera.json with the intrinsics (default: the world's usual)");
   app.add_option("--frame-period-s", f.survey.frame_period_s, "mission seconds between images")
       ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--exposure", f.survey.sensors.exposure, "robots differ in brightness by up to 1 + this")
+      ->capture_default_str();
+  app.add_option("--color-cast", f.survey.sensors.color_cast,
+                 "robots differ in each colour by up to this part")
+      ->capture_default_str();
+  app.add_option("--pose-drift", f.survey.sensors.pose_drift,
+                 "dead reckoning's error, m per square root of a metre flown")
+      ->capture_default_str();
+  app.add_option("--depth-noise", f.survey.sensors.depth_noise, "standard deviation of depth over depth")
+      ->capture_default_str();
+  app.add_option("--depth-holes", f.survey.sensors.depth_holes, "part of the depth that is missing")
       ->capture_default_str();
   app.add_option("--out", f.agent.out_dir, "folder for robots/RNN/{map.csv,topics.json,poses.txt}");
   app.add_flag("--fuse", f.agent.fuse, "hold everybody's beliefs and fuse them on board too");

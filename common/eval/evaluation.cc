@@ -10,6 +10,7 @@
 #include <set>
 #include <stdexcept>
 #include <thread>
+#include <unordered_set>
 
 #include "shoal/eval/ami.h"
 #include "shoal/eval/cell_truth.h"
@@ -19,6 +20,59 @@
 
 namespace shoal::eval {
 namespace fs = std::filesystem;
+namespace {
+
+/// Shows every frame of a team to `look(half, frame)`, on two threads: half 0 or 1, one at a time each.
+template <typename Look>
+void forEachFrame(const world::Place& place, world::SurveyOptions team, Look&& look) {
+  team.sensors = {};
+  std::vector<std::unique_ptr<world::ObservationSource>> sources;  // made here, where it may throw
+  for (int robot = 0; robot < team.num_robots; ++robot) sources.push_back(place.source(team, robot));
+  std::atomic<size_t> next{0};
+  const auto take = [&](size_t half) {
+    for (size_t robot = next++; robot < sources.size(); robot = next++) {
+      while (const auto frame = sources[robot]->next()) look(half, *frame);
+    }
+  };
+  const std::jthread other(take, 1);
+  take(0);
+}
+
+using Columns = std::unordered_set<world::CellIndex, world::CellHash>;  // z = 0; counted, never listed
+
+Columns columnsWithin(const world::Extent& extent, const world::Grid& grid) {
+  const world::CellIndex first = grid.cellOf({extent.min_x, extent.min_y, 0});
+  const world::CellIndex last = grid.cellOf({extent.max_x, extent.max_y, 0});
+  Columns columns;
+  for (int32_t x = first.x; x <= last.x; ++x) {
+    for (int32_t y = first.y; y <= last.y; ++y) {
+      const Eigen::Vector3d p = grid.centerOf({x, y, 0});
+      const bool inside =
+          p.x() >= extent.min_x && p.x() <= extent.max_x && p.y() >= extent.min_y && p.y() <= extent.max_y;
+      if (inside) columns.insert({x, y, 0});
+    }
+  }
+  return columns;
+}
+
+Columns columnsSeen(const world::Place& place, const world::SurveyOptions& team, const world::Grid& grid) {
+  std::array<Columns, 2> halves;
+  forEachFrame(place, team, [&](size_t half, const world::Observation& frame) {
+    for (int v = 0; v < frame.depth_m.rows; ++v) {
+      for (int u = 0; u < frame.depth_m.cols; ++u) {
+        const double depth = frame.depth_m.at<float>(v, u);
+        if (!(depth > 0.0) || !std::isfinite(depth)) continue;
+        const world::CellIndex cell =
+            grid.cellOf(frame.world_from_camera * frame.intrinsics.unproject(u, v, depth));
+        halves[half].insert({cell.x, cell.y, 0});
+      }
+    }
+  });
+  halves[0].merge(halves[1]);
+  return halves[0];
+}
+
+}  // namespace
 
 Run readRun(const std::string& dir, const world::Grid& grid) {
   Run run;
@@ -47,20 +101,8 @@ TruthOfCell truthFor(const world::Place& place, const world::SurveyOptions& team
   if (place.classes().empty()) {
     return [](const world::CellIndex&) { return std::optional<int>(); };
   }
-  std::vector<std::unique_ptr<world::ObservationSource>> sources;  // made here, where it may throw
-  for (int robot = 0; robot < team.num_robots; ++robot) sources.push_back(place.source(team, robot));
   std::array<ProjectedTruth, 2> halves{ProjectedTruth(grid), ProjectedTruth(grid)};
-  std::atomic<size_t> next{0};
-  const auto project = [&](size_t half) {
-    for (size_t robot = next++; robot < sources.size(); robot = next++) {
-      while (const auto frame = sources[robot]->next()) halves[half].add(*frame);
-      sources[robot].reset();
-    }
-  };
-  {
-    const std::jthread other(project, 1);
-    project(0);
-  }
+  forEachFrame(place, team, [&](size_t half, const world::Observation& frame) { halves[half].add(frame); });
   halves[0].add(halves[1]);
   const auto truth = std::make_shared<const ProjectedTruth>(std::move(halves[0]));
   return [truth](const world::CellIndex& cell) { return truth->at(cell); };
@@ -115,22 +157,14 @@ std::vector<matching::MatcherOptions> allMatchers() {
           {.matcher = "clear", .similarity = "cosine", .sigma = 0.75}};
 }
 
-double coverageOf(const std::vector<world::CellIndex>& cells, const world::Extent& extent,
-                  const world::Grid& grid) {
-  const world::CellIndex first = grid.cellOf({extent.min_x, extent.min_y, 0});
-  const world::CellIndex last = grid.cellOf({extent.max_x, extent.max_y, 0});
-  // Cells whose centre lies inside the extent.
-  const auto inside = [&](int32_t x, int32_t y) {
-    const Eigen::Vector3d p = grid.centerOf({x, y, 0});
-    return p.x() >= extent.min_x && p.x() <= extent.max_x && p.y() >= extent.min_y && p.y() <= extent.max_y;
-  };
-  int64_t total = 0;
-  for (int32_t x = first.x; x <= last.x; ++x)
-    for (int32_t y = first.y; y <= last.y; ++y) total += inside(x, y) ? 1 : 0;
-  std::set<std::pair<int32_t, int32_t>> seen;
-  for (const world::CellIndex& c : cells)
-    if (inside(c.x, c.y)) seen.emplace(c.x, c.y);
-  return total == 0 ? 0.0 : static_cast<double>(seen.size()) / static_cast<double>(total);
+double coverageOf(const std::vector<world::CellIndex>& cells, const world::Place& place,
+                  const world::SurveyOptions& team, const world::Grid& grid) {
+  Columns mapped;
+  for (const world::CellIndex& c : cells) mapped.insert({c.x, c.y, 0});
+  const Columns all = place.extent() ? columnsWithin(*place.extent(), grid) : columnsSeen(place, team, grid);
+  const auto covered =
+      std::ranges::count_if(all, [&](const auto& column) { return mapped.contains(column); });
+  return all.empty() ? 0.0 : static_cast<double>(covered) / static_cast<double>(all.size());
 }
 
 }  // namespace shoal::eval

@@ -55,8 +55,9 @@ Score scoreSingle(const mapping::LocalBelief& single, const TruthOfCell& truth);
 /// The option sets of the paper's table that are built: ID, sequential Hungarian on L2, CLEAR on cosine .75.
 std::vector<matching::MatcherOptions> allMatchers();
 
-/// Fraction of the cell columns whose centre lies inside the extent that hold a cell.
-double coverageOf(const std::vector<world::CellIndex>& cells, const world::Extent& extent,
-                  const world::Grid& grid);
+/// Fraction of the cell columns of the place's extent (those whose centre lies inside) that hold a cell; of
+/// a recording, which has no extent, of the columns that the team's depth images reach.
+double coverageOf(const std::vector<world::CellIndex>& cells, const world::Place& place,
+                  const world::SurveyOptions& team, const world::Grid& grid);
 
 }  // namespace shoal::eval

@@ -9,23 +9,7 @@
 #include "shoal/world/world_folder.h"
 
 namespace shoal::world {
-namespace {
-
 namespace fs = std::filesystem;
-
-/// An RGB-D recording in TUM layout, or a folder of robot* folders of them.
-bool isRecording(const fs::path& folder) {
-  std::error_code error;
-  if (fs::exists(folder / "groundtruth.txt", error)) return true;
-  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
-    std::error_code ignored;
-    const bool is_robot = entry->path().filename().string().rfind("robot", 0) == 0;
-    if (is_robot && fs::exists(entry->path() / "groundtruth.txt", ignored)) return true;
-  }
-  return false;
-}
-
-}  // namespace
 
 void checkCamera(const Intrinsics& intrinsics, const Pose& world_from_camera) {
   constexpr int kMaxSide = 16384;
@@ -48,23 +32,21 @@ void checkCamera(const Intrinsics& intrinsics, const Pose& world_from_camera) {
 std::unique_ptr<World> openWorld(const std::string& spec, uint64_t seed) {
   if (spec.rfind("reef:", 0) == 0) return std::make_unique<ReefWorld>(reefStyle(spec), seed);
   if (spec.rfind("lcm:", 0) == 0) {
-    throw std::invalid_argument(spec + ": a live camera over LCM is not built yet; fly a world folder or " +
-                                "reef:sparse, reef:varied, reef:tuning");
+    throw std::invalid_argument(spec + ": a live camera is one robot's own: start robot_agent --source " +
+                                spec +
+                                " on each robot, and a fusion_node; fly a world folder, a recording or " +
+                                "reef:sparse, reef:varied, reef:tuning here");
   }
   const fs::path folder(spec);
   std::error_code error;
   if (spec.empty() || !fs::exists(folder, error)) {
-    throw std::invalid_argument("no world '" + spec +
-                                "': it must be a folder that holds world.json, or one of " +
-                                "reef:sparse, reef:varied, reef:tuning");
+    throw std::invalid_argument(
+        "no world '" + spec +
+        "': it must be a folder that holds world.json or an RGB-D recording, or one of " +
+        "reef:sparse, reef:varied, reef:tuning");
   }
   if (!fs::is_directory(folder, error)) {
     throw std::invalid_argument(spec + ": is a file; a world is the folder that holds world.json");
-  }
-  if (!fs::exists(folder / "world.json", error) && isRecording(folder)) {
-    throw std::invalid_argument(spec +
-                                ": flying an RGB-D recording (groundtruth.txt) is not built yet; fly a " +
-                                "folder with world.json");
   }
   return readWorldFolder(folder);
 }

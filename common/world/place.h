@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "shoal/world/camera_file.h"
 #include "shoal/world/grid.h"
 #include "shoal/world/source.h"
 #include "shoal/world/survey.h"
@@ -36,9 +37,9 @@ class Place {
   /// @throws std::invalid_argument naming the option that cannot be had here and what would be right.
   virtual SurveyOptions completed(SurveyOptions options) const = 0;
 
-  /// What one robot sees (robot < num_robots), or everybody's frames, one robot after the other, when
-  /// `single`. Options need not be completed(). Any number of sources may be made and read at once, from any
-  /// thread; the place must outlive them.
+  /// What one robot sees through its sensors (robot < num_robots), or everybody's frames, one robot after the
+  /// other, when `single`. Options need not be completed(). Any number of sources may be made and read at
+  /// once, from any thread; the place must outlive them.
   /// @throws std::invalid_argument as completed(), and for a robot that is not of the team.
   virtual std::unique_ptr<ObservationSource> source(const SurveyOptions& options, int robot,
                                                     bool single = false) const = 0;
@@ -51,11 +52,16 @@ class Place {
   virtual bool hasFlatTruth() const = 0;
 };
 
-/// Opens what openWorld() opens, or an RGB-D recording.
+/// Opens what openWorld() opens, or a recording: an RGB-D folder in TUM layout, or a folder of folders
+/// robot0, robot1, ... of them, robot n's each: docs/cameras.md.
+/// @param camera  for recordings: says instead of each camera.json, or beside it, what it says. A world is
+///                flown with the intrinsics of SurveyOptions.
 /// @throws std::invalid_argument naming what is missing or malformed and what would be right.
-std::unique_ptr<Place> openPlace(const std::string& spec, uint64_t seed = 1);
+std::unique_ptr<Place> openPlace(const std::string& spec, uint64_t seed = 1,
+                                 const std::optional<Camera>& camera = {});
 
 /// A world as a place: surveyPath() flown with makeSurveySource().
-std::unique_ptr<Place> makePlace(std::unique_ptr<World> world);
+/// @param seed  of the sensors' faults.
+std::unique_ptr<Place> makePlace(std::unique_ptr<World> world, uint64_t seed = 1);
 
 }  // namespace shoal::world

@@ -139,6 +139,8 @@ class SensedSource final : public ObservationSource {
   }
 
   std::optional<int32_t> numObservations() const override { return source_->numObservations(); }
+  bool ready() override { return source_->ready(); }
+  std::string troubles() const override { return source_->troubles(); }
 
  private:
   Random randomFor(Sensor sensor, const Observation& seen) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "shoal/world/observation.h"
 
@@ -17,6 +18,12 @@ class ObservationSource {
 
   /// How many observations the whole stream has, when that is known.
   virtual std::optional<int32_t> numObservations() const = 0;
+
+  /// Whether next() answers at once. A live source first takes in what has come.
+  virtual bool ready() { return true; }
+
+  /// What was left out so far and why, for people; empty when nothing was.
+  virtual std::string troubles() const { return {}; }
 };
 
 }  // namespace shoal::world

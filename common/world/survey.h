@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "shoal/world/sensors.h"
 #include "shoal/world/world.h"
 
 namespace shoal::world {
@@ -17,6 +18,7 @@ struct SurveyOptions {
   double altitude_m = 0.0;      ///< above Z = 0; 0 = native resolution: fx x metres per pixel
   double frame_period_s = 1.0;  ///< frame n is at n x this
   Intrinsics intrinsics;
+  SensorOptions sensors;  ///< what Place::source() makes of what is seen; paths and truth know nothing of it
 };
 
 /// The rectangles that the robots of a team cover, in robot order: a near-square arrangement of rows, cut

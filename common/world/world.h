@@ -57,8 +57,7 @@ void checkCamera(const Intrinsics& intrinsics, const Pose& world_from_camera);
 
 /// Opens `reef:sparse`, `reef:varied`, `reef:tuning` or a world folder (world.json).
 /// @param seed  varies a procedural reef; ignored by folders.
-/// @throws std::invalid_argument naming what is missing or malformed and what would be right. Kinds that
-///         are not built yet (RGB-D folders, lcm:PREFIX) are refused by name.
+/// @throws std::invalid_argument naming what is missing or malformed and what would be right.
 std::unique_ptr<World> openWorld(const std::string& spec, uint64_t seed = 1);
 
 }  // namespace shoal::world

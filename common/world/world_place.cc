@@ -9,7 +9,9 @@ namespace {
 
 class WorldPlace final : public Place {
  public:
-  explicit WorldPlace(std::unique_ptr<World> world) : world_(std::move(world)) { SHOAL_DEMAND(world_); }
+  WorldPlace(std::unique_ptr<World> world, uint64_t seed) : world_(std::move(world)), seed_(seed) {
+    SHOAL_DEMAND(world_);
+  }
 
   const std::string& name() const override { return world_->name(); }
   const std::vector<TruthClass>& classes() const override { return world_->classes(); }
@@ -17,6 +19,7 @@ class WorldPlace final : public Place {
   bool isRecorded() const override { return false; }
 
   SurveyOptions completed(SurveyOptions options) const override {
+    checkSensors(options.sensors);
     if (options.cell_size_m == 0.0) options.cell_size_m = world_->defaultCellSize();
     if (options.altitude_m == 0.0) options.altitude_m = options.intrinsics.fx * world_->metresPerPixel();
     return options;
@@ -24,8 +27,9 @@ class WorldPlace final : public Place {
 
   std::unique_ptr<ObservationSource> source(const SurveyOptions& options, int robot,
                                             bool single) const override {
-    return makeSurveySource(*world_, surveyPath(*world_, options, robot, single), options.intrinsics,
-                            options.frame_period_s);
+    auto perfect = makeSurveySource(*world_, surveyPath(*world_, options, robot, single), options.intrinsics,
+                                    options.frame_period_s);
+    return withSensors(std::move(perfect), options.sensors, robot, seed_);
   }
 
   std::optional<Extent> extent() const override { return world_->extent(); }
@@ -36,16 +40,13 @@ class WorldPlace final : public Place {
 
  private:
   const std::unique_ptr<const World> world_;
+  const uint64_t seed_;
 };
 
 }  // namespace
 
-std::unique_ptr<Place> makePlace(std::unique_ptr<World> world) {
-  return std::make_unique<WorldPlace>(std::move(world));
-}
-
-std::unique_ptr<Place> openPlace(const std::string& spec, uint64_t seed) {
-  return makePlace(openWorld(spec, seed));
+std::unique_ptr<Place> makePlace(std::unique_ptr<World> world, uint64_t seed) {
+  return std::make_unique<WorldPlace>(std::move(world), seed);
 }
 
 }  // namespace shoal::world

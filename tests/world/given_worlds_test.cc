@@ -4,9 +4,9 @@
 #include <string>
 
 #include <gtest/gtest.h>
+#include <opencv2/core.hpp>
 
-#include "shoal/world/survey.h"
-#include "shoal/world/world.h"
+#include "shoal/world/place.h"
 
 namespace shoal::world {
 namespace {
@@ -46,15 +46,45 @@ TEST(GivenWorldsTest, HaveTruthForTheirCells) {
   EXPECT_GT(scored, cells * 9 / 10);
 }
 
-TEST(GivenWorldsTest, RecordingsAreRefusedByName) {
-  for (const char* name : {"rgbd_redkitchen", "uav_dubai_tile5"}) {
-    try {
-      (void)openWorld(given(name));
-      FAIL() << name;
-    } catch (const std::invalid_argument& e) {
-      EXPECT_NE(std::string(e.what()).find("not built yet"), std::string::npos) << e.what();
+TEST(GivenWorldsTest, RecordingsFlyWithEveryFrame) {
+  const auto team = openPlace(given("uav_dubai_tile5"));
+  EXPECT_EQ(team->maxRobots(), 4);
+  EXPECT_EQ(team->classes().size(), 5u);
+  SurveyOptions options = team->completed({});
+  EXPECT_EQ(options.observations, 30);
+  EXPECT_NEAR(options.cell_size_m, 24.0, 2.0);  // about 200 m above ground, fx 200
+  options.num_robots = 4;
+  for (int robot = 0; robot < 4; ++robot) {
+    const auto source = team->source(options, robot);
+    int frames = 0;
+    while (const auto frame = source->next()) {
+      EXPECT_EQ(frame->number, frames++);
+      EXPECT_FALSE(frame->labels.empty());
+      // The ground is flat at Z = 0: every pixel with a depth lies on it, to a step of the depth picture.
+      for (int u = 0; u < 320; u += 40) {
+        const float depth = frame->depth_m.at<float>(120, u);
+        if (depth > 0) {
+          EXPECT_NEAR((frame->world_from_camera * frame->intrinsics.unproject(u, 120, double{depth})).z(), 0,
+                      0.1);
+        }
+      }
     }
+    EXPECT_EQ(frames, 30);
+    EXPECT_EQ(source->troubles(), "");
   }
+}
+
+TEST(GivenWorldsTest, TheKitchenHasDepthAndNoTruth) {
+  const auto kitchen = openPlace(given("rgbd_redkitchen"));
+  EXPECT_EQ(kitchen->maxRobots(), 1);
+  EXPECT_TRUE(kitchen->classes().empty());
+  const SurveyOptions options = kitchen->completed({});
+  EXPECT_EQ(options.observations, 72);
+  EXPECT_GT(options.cell_size_m, 0.05);
+  EXPECT_LT(options.cell_size_m, 0.5);
+  const auto first = kitchen->source(options, 0)->next();
+  EXPECT_GT(cv::countNonZero(first->depth_m > 0), 320 * 240 / 2);
+  EXPECT_TRUE(first->labels.empty());
 }
 
 }  // namespace

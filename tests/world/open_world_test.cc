@@ -42,14 +42,8 @@ TEST(OpenWorldTest, SaysWhatAWorldIs) {
   expectRefusal(folder + "/file", {folder + "/file", "is a file", "world.json"});
 }
 
-TEST(OpenWorldTest, RefusesByNameWhatIsNotBuiltYet) {
-  const WorldOnDisk disk;
-  disk.write("groundtruth.txt", "");
-  expectRefusal(disk.folder().string(), {disk.folder().string(), "RGB-D", "not built yet"});
-  std::filesystem::create_directories(disk.folder() / "team" / "robot0");
-  disk.write("team/robot0/groundtruth.txt", "");
-  expectRefusal((disk.folder() / "team").string(), {"RGB-D", "not built yet"});
-  expectRefusal("lcm:CAMERA", {"lcm:CAMERA", "not built yet"});
+TEST(OpenWorldTest, ALiveCameraIsForOneRobotsAgent) {
+  expectRefusal("lcm:CAMERA", {"robot_agent --source lcm:CAMERA", "each robot"});
 }
 
 }  // namespace
