@@ -19,6 +19,7 @@ void addMatchCommand(CLI::App& app, Action& chosen);
 void addQuestionCommands(CLI::App& app, Action& chosen);
 void addEvaluateCommand(CLI::App& app, Action& chosen);
 void addReproduceCommand(CLI::App& app, Action& chosen);
+void addTuneCommand(CLI::App& app, Action& chosen);
 
 /// Subcommands that are not built yet: refused by name, whatever follows them.
 void addUnbuiltCommands(CLI::App& app, Action& chosen);

@@ -30,6 +30,7 @@ int main(int argc, char** argv) {
   console::addMatchCommand(app, chosen);
   console::addEvaluateCommand(app, chosen);
   console::addReproduceCommand(app, chosen);
+  console::addTuneCommand(app, chosen);
   console::addQuestionCommands(app, chosen);
   console::addUnbuiltCommands(app, chosen);
   try {

@@ -21,8 +21,9 @@ double studentQuantile(int degrees_of_freedom) {
   }
   constexpr double x = 1.959964;
   const double n = degrees_of_freedom;
-  const double x3 = x * x * x, x5 = x3 * x * x;
-  return x + (x3 + x) / (4 * n) + (5 * x5 + 16 * x3 + 3 * x) / (96 * n * n);
+  const double x3 = x * x * x, x5 = x3 * x * x, x7 = x5 * x * x;
+  return x + (x3 + x) / (4 * n) + (5 * x5 + 16 * x3 + 3 * x) / (96 * n * n) +
+         (3 * x7 + 19 * x5 + 17 * x3 - 15 * x) / (384 * n * n * n);
 }
 
 Summary summarize(std::span<const double> sample) {
