@@ -11,6 +11,9 @@
 
 #include "fusion_node/process.h"
 #include "operator_console/command.h"
+#include "operator_console/explain.h"
+#include "shoal/eval/team_learning.h"
+#include "shoal/eval/topic_tally.h"
 #include "shoal/mapping/atomic_file.h"
 #include "shoal/world/place.h"
 
@@ -23,7 +26,7 @@ double rounded(double value) { return std::round(value * 1e6) / 1e6; }
 
 struct Flags {
   std::string run, world, matcher = "all", similarity, sigma = "0.75";
-  bool json = false;
+  bool json = false, explain = false;
 };
 
 void evaluate(const Flags& flags) {
@@ -45,13 +48,14 @@ void evaluate(const Flags& flags) {
     options.sigma = fusion_node::parseSigma(flags.sigma);
     if (!flags.similarity.empty()) options.similarity = flags.similarity;
   }
-  const Evaluation result = evaluateRun(flags.run, *place, team, matchers);
+  const Evaluation result = evaluateRun(flags.run, *place, team, matchers, flags.explain);
   if (flags.json) {
     std::cout << result.json().dump(2) << '\n';
   } else {
     std::cout << (place->classes().empty()
                       ? flags.world + " has no labels: there is nothing to score against\n"
                       : scoreTable(result));
+    if (result.explanation) std::cout << explanationText(*result.explanation, place->classes());
   }
 }
 
@@ -62,15 +66,15 @@ Json Evaluation::json() const {
   Json result{{"cells", first.cells},       {"scored", first.scored},   {"coverage", rounded(coverage)},
               {"cell_size_m", cell_size_m}, {"classes", first.classes}, {"matchers", Json::object()}};
   for (size_t i = 0; i < scores.size(); ++i) {
-    result["matchers"][matchers[i].matcher] = {{"ami", rounded(scores[i].ami)},
-                                               {"nmi", rounded(scores[i].nmi)},
-                                               {"labels", scores[i].labels},
-                                               {"sigma", matchers[i].sigma},
-                                               {"similarity", matchers[i].similarity}};
+    result["matchers"][matchers[i].matcher] = {
+        {"ami", rounded(scores[i].ami)}, {"ami_concatenated", rounded(ami_concatenated[i])},
+        {"nmi", rounded(scores[i].nmi)}, {"labels", scores[i].labels},
+        {"sigma", matchers[i].sigma},    {"similarity", matchers[i].similarity}};
   }
   if (single)
     result["single"] = {
         {"ami", rounded(single->ami)}, {"nmi", rounded(single->nmi)}, {"labels", single->labels}};
+  if (explanation) result["explanation"] = explanationJson(*explanation, truth.classes);
   return result;
 }
 
@@ -96,7 +100,7 @@ world::SurveyOptions teamOf(const Json& summary) {
 }
 
 Evaluation evaluateRun(const std::string& dir, const world::Place& place, const world::SurveyOptions& team,
-                       const std::vector<matching::MatcherOptions>& matchers) {
+                       const std::vector<matching::MatcherOptions>& matchers, bool explain) {
   const world::Grid grid(team.cell_size_m);
   const eval::Run run = eval::readRun(dir, grid);
   Evaluation result;
@@ -105,6 +109,13 @@ Evaluation evaluateRun(const std::string& dir, const world::Place& place, const 
   result.truth = {place.classes(), eval::truthFor(place, team, grid)};
   result.scores = eval::scoreMatchers(run, matchers, result.truth.of_cell);
   if (run.single) result.single = eval::scoreSingle(*run.single, result.truth.of_cell);
+  const eval::Stacked stacked = eval::stackTeam(run.robots);
+  const eval::TeamTally all =
+      eval::tally(stacked.beliefs, result.truth.of_cell, eval::FusionRule::kConcatenate);
+  for (const matching::MatcherOptions& options : matchers) {
+    result.ami_concatenated.push_back(eval::scoreMatcher(stacked, all, options).ami);
+  }
+  if (explain) result.explanation = eval::explain(run, matchers.back(), result.truth.of_cell);
   std::vector<world::CellIndex> cells;
   for (const mapping::LocalBelief& belief : run.robots)
     for (const mapping::BelievedCell& c : belief.cells) cells.push_back(c.cell);
@@ -141,6 +152,8 @@ void addEvaluateCommand(CLI::App& app, Action& chosen) {
                       "cosine, overlap, l1 or l2 (default: the matcher's usual)");
   command->add_option("--sigma", flags->sigma, "least similarity of a match, in (0, 1]")
       ->capture_default_str();
+  command->add_flag("--explain", flags->explain,
+                    "why: the ceiling of any matcher, purity by robot, what each label holds");
   command->add_flag("--json", flags->json, "answer in JSON");
   command->callback([flags, &chosen] {
     chosen = [flags] {

@@ -9,6 +9,7 @@
 
 #include "operator_console/render.h"
 #include "shoal/eval/evaluation.h"
+#include "shoal/eval/explanation.h"
 
 namespace shoal::console {
 
@@ -19,8 +20,10 @@ struct Evaluation {
   double cell_size_m = 1;
   double coverage = 0;  ///< fraction of the world's ground columns that the team's map has
   std::vector<matching::MatcherOptions> matchers;
-  std::vector<eval::Score> scores;  ///< per matcher
+  std::vector<eval::Score> scores;       ///< per matcher
+  std::vector<double> ami_concatenated;  ///< per matcher, with a cell counted once for each robot that saw it
   std::optional<eval::Score> single;
+  std::optional<eval::Explanation> explanation;  ///< of the last matcher, when it was asked for
   TruthPicture truth;
 };
 
@@ -35,7 +38,7 @@ std::optional<world::Camera> cameraOf(const nlohmann::ordered_json& summary);
 /// @param team  as it flew: completed() for that place.
 /// @throws std::runtime_error naming what is missing or broken in the run.
 Evaluation evaluateRun(const std::string& dir, const world::Place& place, const world::SurveyOptions& team,
-                       const std::vector<matching::MatcherOptions>& matchers);
+                       const std::vector<matching::MatcherOptions>& matchers, bool explain = false);
 
 /// The table that people read.
 std::string scoreTable(const Evaluation& evaluation);
