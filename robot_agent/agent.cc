@@ -22,6 +22,7 @@ namespace {
 using fusion_node::stopRequested;
 
 constexpr int64_t kSecondUs = 1'000'000;
+constexpr int kAwaitMs = 20;  // between two looks at a live source
 // As fast as possible still leaves the others time to listen: wall time for a mission second after landing.
 constexpr auto kBusySecond = std::chrono::milliseconds(10);    // new content waits
 constexpr auto kIdleSecond = std::chrono::milliseconds(30);    // somebody may still lack something
@@ -90,6 +91,8 @@ void Agent::run() {
 
 void Agent::fly() {
   while (!stopRequested()) {
+    awaitObservation();
+    if (stopRequested()) break;
     const auto observation = source_.next();
     if (!observation) break;
     passTimeUntil(observation->time.us);
@@ -102,6 +105,14 @@ void Agent::fly() {
   spdlog::info("landed after {} observations: {} topics, {} cells, {:.1f} ms each", path_.size(),
                belief_.topics.size(), belief_.cells.size(),
                path_.empty() ? 0.0 : total_ms_ / static_cast<double>(path_.size()));
+}
+
+// Sends and listens meanwhile. Mission time as fast as possible does not pass: only observations move it.
+void Agent::awaitObservation() {
+  while (!stopRequested() && !source_.ready()) {
+    sender_.pump(clock_.now());
+    listen(kAwaitMs);
+  }
 }
 
 void Agent::takeIn(const world::Observation& observation) {

@@ -43,6 +43,7 @@ class Agent {
 
  private:
   void fly();
+  void awaitObservation();
   void linger();
   void takeIn(const world::Observation& observation);
   void publish();

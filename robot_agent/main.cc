@@ -4,12 +4,16 @@
 #include <memory>
 #include <optional>
 #include <stdexcept>
+#include <string>
+#include <string_view>
 
 #include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
 
 #include "fusion_node/process.h"
 #include "robot_agent/agent.h"
+#include "robot_agent/camera_stream.h"
+#include "shoal/comms/camera_channels.h"
 #include "shoal/comms/lcm_bus.h"
 #include "shoal/comms/lcm_url.h"
 #include "shoal/version.h"
@@ -22,11 +26,74 @@ using namespace shoal;  // NOLINT: a main file
 struct Flags {
   std::string robot = "R00", source, url = comms::kDefaultUrl, rate = "1", mission = "shoal",
               log_level = "info";
-  std::string sigma = "0.75", checkpoint, camera;
+  std::string sigma = "0.75", checkpoint, camera, source_url;
+  double source_timeout_s = 0;
+  int64_t source_start_us = -1;
+  bool period_given = false;
   bool single = false;
   world::SurveyOptions survey;
   robot_agent::AgentOptions agent;
 };
+
+/// What a robot sees, and what it needs for that.
+struct Source {
+  std::unique_ptr<comms::LcmBus> cameras;
+  std::unique_ptr<world::Place> place;
+  std::unique_ptr<world::ObservationSource> source;  // the last, for it uses the others
+  double cell_size_m = 0;
+  std::string what;
+};
+
+constexpr std::string_view kLive = "lcm:";
+bool isLive(const Flags& flags) { return flags.source.starts_with(kLive); }
+
+/// A real robot's cameras.
+Source openLive(const Flags& flags) {
+  const auto need = [&flags](bool there, const std::string& what) {
+    if (!there) throw std::invalid_argument("--source " + flags.source + " needs " + what);
+  };
+  need(!flags.camera.empty(), "--camera FILE, for the intrinsics are in none of the messages");
+  need(flags.survey.cell_size_m > 0, "--cell-size-m, the same for the whole team");
+  need(!flags.single, "a robot of its own: --single flies worlds and recordings");
+  if (!(flags.source_timeout_s >= 0)) throw std::invalid_argument("--source-timeout-s must be >= 0");
+  const std::string prefix = flags.source.substr(kLive.size());
+  world::LiveOptions options;
+  options.camera = world::readCamera(flags.camera);
+  options.altitude_m = flags.survey.altitude_m;
+  options.max_observations = flags.survey.observations;
+  options.min_period_s = flags.period_given ? flags.survey.frame_period_s : 0.0;
+  if (flags.source_start_us >= 0) options.start = world::Timestamp{flags.source_start_us};
+  Source from;
+  comms::LcmBusOptions bus;
+  bus.channels = comms::CameraChannels(prefix).all();
+  bus.max_queue = 256;
+  bus.max_message_bytes = wire::kMaxCameraBytes;
+  from.cameras =
+      std::make_unique<comms::LcmBus>(flags.source_url.empty() ? flags.url : flags.source_url, bus);
+  from.source = world::withSensors(
+      std::make_unique<robot_agent::CameraStream>(*from.cameras, prefix, options, flags.source_timeout_s),
+      flags.survey.sensors, 0, flags.agent.explorer.seed);
+  from.cell_size_m = flags.survey.cell_size_m;
+  from.what = "what " + prefix + "_IMAGE, _DEPTH, _IMAGES and _POSE say on " + from.cameras->url();
+  return from;
+}
+
+/// A world or a recording.
+Source openPlace(Flags flags, int robot) {
+  std::optional<world::Camera> camera;
+  if (!flags.camera.empty()) {
+    camera = world::readCamera(flags.camera);
+    flags.survey.intrinsics = camera->intrinsics;
+  }
+  Source from;
+  from.place = world::openPlace(flags.source, flags.agent.explorer.seed, camera);
+  const world::SurveyOptions team = from.place->completed(flags.survey);
+  from.cell_size_m = team.cell_size_m;
+  from.source = from.place->source(team, robot, flags.single);
+  from.what =
+      std::to_string(from.source->numObservations().value_or(0)) + " observations over " + from.place->name();
+  return from;
+}
 
 void sayTroubles(const world::ObservationSource& source) {
   if (const std::string troubles = source.troubles(); !troubles.empty())
@@ -37,7 +104,7 @@ int run(Flags flags) {
   robot_agent::AgentOptions& options = flags.agent;
   const auto id = world::parseRobotId(flags.robot);
   if (!id) throw std::invalid_argument("robot \"" + flags.robot + "\" should be R00, R01, ... R9999");
-  if (number(*id) >= flags.survey.num_robots && !flags.single) {
+  if (number(*id) >= flags.survey.num_robots && !flags.single && !isLive(flags)) {
     throw std::invalid_argument("robot " + flags.robot + " is not of a team of " +
                                 std::to_string(flags.survey.num_robots) + "; raise --robots");
   }
@@ -47,25 +114,18 @@ int run(Flags flags) {
   options.rate = fusion_node::parseRate(flags.rate);
   options.matcher.sigma = fusion_node::parseSigma(flags.sigma);
 
-  std::optional<world::Camera> camera;
-  if (!flags.camera.empty()) {
-    camera = world::readCamera(flags.camera);
-    flags.survey.intrinsics = camera->intrinsics;
-  }
-  const auto place = world::openPlace(flags.source, options.explorer.seed, camera);
-  const world::SurveyOptions team = place->completed(flags.survey);
-  options.explorer.cell_size_m = team.cell_size_m;
-  const auto source = place->source(team, number(*id), flags.single);
+  const Source from = isLive(flags) ? openLive(flags) : openPlace(flags, number(*id));
+  options.explorer.cell_size_m = from.cell_size_m;
+  world::ObservationSource& source = *from.source;
   if (flags.single) {
-    robot_agent::runAlone(options, *source);
-    sayTroubles(*source);
+    robot_agent::runAlone(options, source);
+    sayTroubles(source);
     return 0;
   }
   comms::LcmBus bus(flags.url);
-  spdlog::info("{} flies {} observations over {}, mission {}, on {}", flags.robot,
-               source->numObservations().value_or(0), place->name(), options.mission, bus.url());
-  robot_agent::Agent(options, *source, bus).run();
-  sayTroubles(*source);
+  spdlog::info("{} flies {}, mission {}, on {}", flags.robot, from.what, options.mission, bus.url());
+  robot_agent::Agent(options, source, bus).run();
+  sayTroubles(source);
   return 0;
 }
 
@@ -80,7 +140,8 @@ int main(int argc, char** argv) {
   app.allow_config_extras(CLI::config_extras_mode::ignore_all);  // the file serves other programs too
   app.add_option("--robot", f.robot, "R00, R01, ...")->capture_default_str();
   app.add_option("--source", f.source,
-                 "reef:sparse, reef:varied, reef:tuning, a world folder, or a recording")
+                 "reef:sparse, reef:varied, reef:tuning, a world folder, a recording, or lcm:PREFIX (a real "
+                 "robot's cameras)")
       ->required();
   app.add_option("--robots", f.survey.num_robots, "robots that share the area; robot k flies share k")
       ->check(CLI::Range(1, 10000))
@@ -107,9 +168,19 @@ int main(int argc, char** argv) {
          "camera height, m (default: native resolution); of a recording without depth, above a flat floor")
       ->check(CLI::PositiveNumber);
   app.add_option("--camera", f.camera, "camera.json with the intrinsics (default: the world's usual)");
-  app.add_option("--frame-period-s", f.survey.frame_period_s, "mission seconds between images")
-      ->check(CLI::PositiveNumber)
+  auto* period =
+      app.add_option("--frame-period-s", f.survey.frame_period_s,
+                     "mission seconds between images; of lcm:PREFIX the least (default: every one)")
+          ->check(CLI::PositiveNumber)
+          ->capture_default_str();
+  app.add_option("--source-url", f.source_url,
+                 "lcm:PREFIX: multicast group of the cameras (default: the link's)");
+  app.add_option("--source-timeout-s", f.source_timeout_s,
+                 "lcm:PREFIX: land after so many seconds without an image, 0 = never")
       ->capture_default_str();
+  app.add_option("--source-start-us", f.source_start_us,
+                 "lcm:PREFIX: the utime that is mission time 0 (default: of the first image)")
+      ->check(CLI::NonNegativeNumber);
   app.add_option("--exposure", f.survey.sensors.exposure, "robots differ in brightness by up to 1 + this")
       ->capture_default_str();
   app.add_option("--color-cast", f.survey.sensors.color_cast,
@@ -142,6 +213,7 @@ int main(int argc, char** argv) {
   try {
     fusion_node::setUpLog(f.single ? "single" : f.robot, f.log_level);
     fusion_node::catchStopSignals();
+    f.period_given = period->count() > 0;
     if (similarity->count() == 0)
       f.agent.matcher.similarity = matching::usualSimilarity(f.agent.matcher.matcher);
     return run(std::move(f));

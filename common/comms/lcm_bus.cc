@@ -4,7 +4,9 @@
 #include <poll.h>
 
 #include <algorithm>
+#include <cctype>
 #include <chrono>
+#include <cstdint>
 #include <deque>
 #include <lcm/lcm-cpp.hpp>
 #include <stdexcept>
@@ -27,12 +29,18 @@ int millisecondsUntil(Clock::time_point deadline) {
 }  // namespace
 
 struct LcmBus::Impl {
-  explicit Impl(const std::string& url_in, size_t max) : url(url_in), max_queue(max), transport(url_in) {}
+  Impl(const std::string& url_in, const LcmBusOptions& options_in)
+      : url(url_in), options(options_in), transport(url_in) {}
 
   void onMessage(const lcm::ReceiveBuffer& buffer, const std::string& channel) noexcept;
 
+  bool isKnown(const std::string& channel) const {
+    return options.channels.empty() ? parseChannel(channel).has_value()
+                                    : std::ranges::find(options.channels, channel) != options.channels.end();
+  }
+
   std::string url;
-  size_t max_queue;
+  LcmBusOptions options;
   std::deque<Packet> queue;
   LcmBusCounts counts;
   lcm::LCM transport;
@@ -42,16 +50,16 @@ struct LcmBus::Impl {
 // Called from inside LCM, which an exception would leave locked. A datagram without a channel's NUL arrives
 // with a data_size near 2^32: nothing is read before the sizes are known to be sound.
 void LcmBus::Impl::onMessage(const lcm::ReceiveBuffer& buffer, const std::string& channel) noexcept {
-  if (messageSize(channel.size(), buffer.data_size) > kMaxMessageBytes) {
+  if (messageSize(channel.size(), buffer.data_size) > options.max_message_bytes) {
     ++counts.bad_size;
     return;
   }
-  if (queue.size() >= max_queue) {
+  if (queue.size() >= options.max_queue) {
     ++counts.dropped;
     return;
   }
   try {
-    if (!parseChannel(channel)) {
+    if (!isKnown(channel)) {
       ++counts.bad_channel;
       return;
     }
@@ -64,7 +72,18 @@ void LcmBus::Impl::onMessage(const lcm::ReceiveBuffer& buffer, const std::string
 
 LcmBus::LcmBus(const std::string& url, const LcmBusOptions& options) {
   if (options.max_queue < 1) throw std::invalid_argument("max_queue must be at least 1, got 0");
-  impl_ = std::make_unique<Impl>(withReceiveBuffer(url), options.max_queue);
+  if (options.max_message_bytes < kMaxMessageBytes || options.max_message_bytes > size_t{1} << 28) {
+    throw std::invalid_argument("max_message_bytes must lie in [1400, 2^28], got " +
+                                std::to_string(options.max_message_bytes));
+  }
+  for (const std::string& channel : options.channels) {
+    const auto plain = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
+    if (channel.empty() || channel.size() > kMaxChannelLength || !std::ranges::all_of(channel, plain)) {
+      throw std::invalid_argument("channel \"" + channel +
+                                  "\" should be 1 to 63 letters, digits and underscores");
+    }
+  }
+  impl_ = std::make_unique<Impl>(withReceiveBuffer(url), options);
   const auto fail = [&](const char* what) {
     throw std::runtime_error("LCM cannot use " + impl_->url + ": " + what +
                              "; without a multicast route, run: sudo ip route add 224.0.0.0/4 dev lo");
@@ -75,9 +94,14 @@ LcmBus::LcmBus(const std::string& url, const LcmBusOptions& options) {
   const Handler handler = [](const lcm::ReceiveBuffer* buffer, const std::string& channel, Impl* impl) {
     impl->onMessage(*buffer, channel);
   };
-  lcm::Subscription* subscription = impl_->transport.subscribeFunction(kAllChannels, handler, impl_.get());
-  if (subscription == nullptr) fail("subscribing failed");
-  subscription->setQueueCapacity(0);         // unlimited: the bound is ours, with a counter
+  const auto subscribe = [&](const std::string& pattern, int capacity) {
+    lcm::Subscription* subscription = impl_->transport.subscribeFunction(pattern, handler, impl_.get());
+    if (subscription == nullptr) fail("subscribing failed");
+    subscription->setQueueCapacity(capacity);
+  };
+  if (options.channels.empty()) subscribe(kAllChannels, 0);  // unlimited: the bound is ours, with a counter
+  for (const std::string& channel : options.channels)
+    subscribe(channel, static_cast<int>(std::min<size_t>(options.max_queue, INT32_MAX)));
   impl_->fd = impl_->transport.getFileno();  // starts the receiving thread, with LCM's self test
   if (impl_->fd < 0) fail("the receiving thread did not start");
 }
@@ -85,8 +109,8 @@ LcmBus::LcmBus(const std::string& url, const LcmBusOptions& options) {
 LcmBus::~LcmBus() = default;
 
 void LcmBus::publish(const Packet& packet) {
-  SHOAL_DEMAND(messageSize(packet) <= kMaxMessageBytes);
-  SHOAL_DEMAND(parseChannel(packet.channel).has_value());
+  SHOAL_DEMAND(messageSize(packet) <= impl_->options.max_message_bytes);
+  SHOAL_DEMAND(impl_->isKnown(packet.channel));
   impl_->transport.publish(packet.channel, packet.bytes.data(),
                            static_cast<unsigned int>(packet.bytes.size()));
 }
@@ -98,7 +122,7 @@ int LcmBus::receive(int timeout_ms, const std::function<void(const Packet&)>& ha
     pollfd readable{impl_->fd, POLLIN, 0};
     if (poll(&readable, 1, queue.empty() ? millisecondsUntil(deadline) : 0) <= 0) break;
     // Bounded, so that a flood faster than this loop cannot hold it.
-    const size_t most = 2 * impl_->max_queue;
+    const size_t most = 2 * impl_->options.max_queue;
     for (size_t i = 0; i < most && impl_->transport.handleTimeout(0) > 0; ++i) {
     }
     if (!queue.empty() || Clock::now() >= deadline) break;  // else all of it was refused

@@ -34,6 +34,16 @@ uint64_t ByteReader::varint() {
   return 0;
 }
 
+std::span<const uint8_t> ByteReader::take(uint64_t num_bytes) {
+  if (failed_ || num_bytes > bytes_.size()) {
+    failed_ = true;
+    return {};
+  }
+  const auto taken = bytes_.first(static_cast<size_t>(num_bytes));
+  bytes_ = bytes_.subspan(static_cast<size_t>(num_bytes));
+  return taken;
+}
+
 uint64_t ByteReader::bigEndian(int num_bytes) {
   uint64_t value = 0;
   for (int i = 0; i < num_bytes; ++i) value = value << 8 | next();

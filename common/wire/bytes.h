@@ -32,7 +32,10 @@ class ByteReader {
 
   uint64_t varint();
   uint64_t bigEndian(int num_bytes);
+  /// The next bytes as they are, seen in place; none of them when there are not so many.
+  std::span<const uint8_t> take(uint64_t num_bytes);
 
+  size_t remaining() const { return bytes_.size(); }
   bool failed() const { return failed_; }
 
  private:

@@ -52,4 +52,8 @@ void PoseTrack::forgetBefore(Timestamp time) {
   poses_.erase(poses_.begin(), std::prev(last_before));
 }
 
+void PoseTrack::keepNewest(size_t most) {
+  while (poses_.size() > most) poses_.erase(poses_.begin());
+}
+
 }  // namespace shoal::world

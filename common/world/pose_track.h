@@ -49,6 +49,9 @@ class PoseTrack {
   /// Forgets what lies before a time, but for the last before it.
   void forgetBefore(Timestamp time);
 
+  /// Forgets all but the newest.
+  void keepNewest(size_t most);
+
   size_t size() const { return poses_.size(); }
 
  private:
