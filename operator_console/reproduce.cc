@@ -74,6 +74,8 @@ class Experiment {
         matchers_(matchers),
         place_(world::openPlace(world, options.seed)),
         result_{.world = world, .repeats = {}, .by_shares = {}, .maps = {}} {
+    if (place_->classes().empty()) throw std::invalid_argument(world + " has no labels to score against");
+    robots_ = std::min(options.num_robots, place_->maxRobots());
     name_ = place_->name();
     for (char& c : name_) {
       if (c == ':' || c == '/') c = '_';
@@ -82,8 +84,9 @@ class Experiment {
 
   WorldResult run() {
     const auto start = std::chrono::steady_clock::now();
-    const eval::TeamWords words = look(options_.num_robots, options_.observations);
+    const eval::TeamWords words = look(robots_, options_.observations);
     result_.classes = static_cast<int>(place_->classes().size());
+    result_.robots = robots_;
     result_.cell_size_m = words.cell_size_m;
     for (const auto& robot : words.robots) result_.images += std::ssize(robot);
     runRepeats(words);
@@ -94,6 +97,8 @@ class Experiment {
     result_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return std::move(result_);
   }
+
+  const std::string& world() const { return result_.world; }
 
  private:
   eval::TeamWords look(int robots, int32_t observations) {
@@ -106,8 +111,9 @@ class Experiment {
     std::atomic<int64_t> images{0};
     const LiveBar bar(result_.world + ", words of " + std::to_string(robots) + " robots", images,
                       int64_t{robots} * observations);
-    return eval::lookAround(*place_, options_.seed, survey, options_.profile,
-                            {.folder = options_.out + "/words", .images = &images});
+    return eval::lookAround(
+        *place_, options_.seed, survey, options_.profile,
+        {.folder = options_.out + "/words", .made_by = commit() + (" " + result_.world), .images = &images});
   }
 
   eval::LearningOptions learning(int repeat) const {
@@ -134,7 +140,7 @@ class Experiment {
   }
 
   void runRepeats(const eval::TeamWords& words) {
-    const std::string key = keyOf(options_.num_robots, options_.observations);
+    const std::string key = keyOf(robots_, options_.observations);
     result_.repeats.resize(static_cast<size_t>(options_.repeats));
     std::atomic<int64_t> done{0};
     const LiveBar bar(result_.world + ", repeats", done, options_.repeats);
@@ -217,6 +223,7 @@ class Experiment {
   std::unique_ptr<world::Place> place_;
   WorldResult result_;
   std::string name_;
+  int robots_ = 0;  // a recording may have fewer than was asked for
 };
 
 }  // namespace
@@ -226,11 +233,12 @@ Reproduction reproduce(const ReproduceOptions& options) {
   catchStopSignals();
   fs::create_directories(options.out + "/words");
   Reproduction reproduction{.options = options, .matchers = eval::tableMatchers(), .worlds = {}};
-  for (const std::string& world : options.worlds) world::openPlace(world, options.seed);  // all there?
-  for (const std::string& world : options.worlds) {
-    spdlog::info("{}: {} repeats of {} robots x {} images", world, options.repeats, options.num_robots,
-                 options.observations);
-    reproduction.worlds.push_back(Experiment(options, reproduction.matchers, world).run());
+  std::vector<Experiment> experiments;  // all opened first: what is wrong with the last is said at once
+  for (const std::string& world : options.worlds)
+    experiments.emplace_back(options, reproduction.matchers, world);
+  for (Experiment& experiment : experiments) {
+    spdlog::info("{}: {} repeats", experiment.world(), options.repeats);
+    reproduction.worlds.push_back(experiment.run());
   }
   writeReport(reproduction);
   return reproduction;

@@ -41,6 +41,7 @@ struct SampleMap {
 struct WorldResult {
   std::string world;
   int classes = 0;
+  int robots = 0;
   int64_t images = 0;
   double cell_size_m = 0;
   std::vector<eval::Repeat> repeats;

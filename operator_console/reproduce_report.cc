@@ -261,18 +261,19 @@ std::string html(const Reproduction& all) {
     }
     const eval::Repeat& first = world.repeats[0];
     page += fmt::format(
-        "</table>\n<p class=\"note\">{} cells of {:g} m with {} classes, {} images. Robots' own topics are "
+        "</table>\n<p class=\"note\">{} cells of {:g} m with {} classes, {} images of {} robots. Robots' own "
+        "topics are "
         "{:.1f} % pure. One robot sends {:.1f} kB of topics and "
         "{:.1f} kB of map without losses (changes after every fifth image, all headers counted, no "
         "heartbeats).",
         first.newest.empty() ? 0 : first.newest[0].cells, world.cell_size_m, world.classes, world.images,
-        100 * over(world, [](const auto& r) { return r.purity; }).mean, first.topics_bytes / 1000,
-        first.map_bytes / 1000);
+        world.robots, 100 * over(world, [](const auto& r) { return r.purity; }).mean,
+        first.topics_bytes / 1000, first.map_bytes / 1000);
     if (o.exchange_every > 0) {
       page += fmt::format(
-          " When models are merged and given back every {} images, one robot sends {:.1f} kB of topics and "
-          "receives "
-          "{:.1f} kB of merged models.",
+          " Merging models every {} images, one robot sends {:.1f} kB of topics, which is all that matching "
+          "at the "
+          "same rhythm would need, and receives {:.1f} kB of merged models besides.",
           o.exchange_every, first.merged_sent / 1000, first.merged_received / 1000);
     }
     page += fmt::format(" {} of wall time.</p>\n", duration(world.seconds));
@@ -337,6 +338,7 @@ Json summaryOf(const Reproduction& all) {
          {"cells", first.newest[0].cells},
          {"scored", first.newest[0].scored},
          {"cell_size_m", world.cell_size_m},
+         {"robots", world.robots},
          {"images", world.images},
          {"purity", toJson(over(world, [](const auto& r) { return r.purity; }))},
          {"rows", rows},

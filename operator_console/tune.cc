@@ -92,8 +92,9 @@ Json tune(const TuneOptions& options) {
   const auto place = world::openPlace(options.world, options.seed);
   spdlog::info("{}: words of {} x {} images", options.world, options.num_robots, options.observations);
   std::filesystem::create_directories(options.out + "/words");
-  const eval::TeamWords words = eval::lookAround(*place, options.seed, survey, options.profile,
-                                                 {.folder = options.out + "/words", .images = nullptr});
+  const eval::TeamWords words = eval::lookAround(
+      *place, options.seed, survey, options.profile,
+      {.folder = options.out + "/words", .made_by = commit() + (" " + options.world), .images = nullptr});
   if (words.truth.empty()) throw std::invalid_argument(options.world + " has no labels to score against");
 
   // What is kept is worth something only for the same question to the same program.

@@ -16,18 +16,20 @@
 namespace shoal::eval {
 namespace {
 
-// Grows with what changes in how places look or words are made without changing a fingerprint.
-constexpr uint64_t kGeneration = 1;
-
 uint64_t keyOf(const world::Place& place, uint64_t place_seed, const world::SurveyOptions& survey,
-               uint64_t words) {
-  uint64_t key = hashCombine(kGeneration, words);
+               uint64_t words, const std::string& made_by) {
+  uint64_t key = mix64(words);
   const auto add = [&key](uint64_t value) { key = hashCombine(key, value); };
   const auto addReal = [&add](double value) { add(std::bit_cast<uint64_t>(value)); };
-  for (const char c : place.name()) add(static_cast<uint64_t>(c));
+  for (const char c : made_by + "\n" + place.name()) add(static_cast<uint64_t>(c));
   add(place_seed);
   add(static_cast<uint64_t>(survey.num_robots));
   add(static_cast<uint64_t>(survey.observations));
+  const world::SensorOptions& sensors = survey.sensors;
+  for (const double value :
+       {sensors.exposure, sensors.color_cast, sensors.pose_drift, sensors.depth_noise, sensors.depth_holes}) {
+    addReal(value);
+  }
   const world::Intrinsics& camera = survey.intrinsics;
   add(static_cast<uint64_t>(camera.width));
   add(static_cast<uint64_t>(camera.height));
@@ -82,7 +84,7 @@ TeamWords lookAround(const world::Place& place, uint64_t place_seed, const world
   const world::SurveyOptions survey = place.completed(wanted);
   const auto extractor = vision::makeWordExtractor(profile);
   const world::Grid grid(survey.cell_size_m);
-  const uint64_t key = keyOf(place, place_seed, survey, extractor->fingerprint());
+  const uint64_t key = keyOf(place, place_seed, survey, extractor->fingerprint(), cache.made_by);
   const auto fileOf = [&](const std::string& what) {
     constexpr std::string_view kDigits = "0123456789abcdef";
     std::string path = cache.folder + "/";

@@ -29,12 +29,13 @@ struct TeamWords {
 /// Where words are kept between runs, and how far looking has got.
 struct WordCache {
   std::string folder;                      ///< empty: nowhere
+  std::string made_by;                     ///< program and world: words of another are not read
   std::atomic<int64_t>* images = nullptr;  ///< grows by one with every image done; may be null
 };
 
 /// Flies the team over the place and extracts the words of every image, on all cores; reads what the cache
-/// has instead. The cache is keyed by place, seed, survey and the fingerprint of the words; broken files in
-/// it are made anew.
+/// has instead. The cache is keyed by who made it, place, seed, survey and the fingerprint of the words;
+/// broken files in it are made anew.
 /// @param place_seed  seed that `place` was opened with.
 /// @throws std::invalid_argument as Place::source() and vision::makeWordExtractor().
 TeamWords lookAround(const world::Place& place, uint64_t place_seed, const world::SurveyOptions& survey,

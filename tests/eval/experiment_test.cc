@@ -95,7 +95,8 @@ TEST_F(ExperimentTest, WordsKeptOnDiskAreTheSameAndBrokenFilesAreMadeAnew) {
   std::atomic<int64_t> images{0};
   for (int pass = 0; pass < 3; ++pass) {
     images = 0;
-    const TeamWords words = lookAround(*place_, 2, survey_, "paper", {.folder = folder, .images = &images});
+    const TeamWords words =
+        lookAround(*place_, 2, survey_, "paper", {.folder = folder, .made_by = "test", .images = &images});
     EXPECT_EQ(images, 6 * kRobots);
     EXPECT_EQ(words.truth, words_->truth);
     for (size_t robot = 0; robot < kRobots; ++robot) {
