@@ -25,6 +25,14 @@ class CoarseMap {
     }
   }
 
+  /// How many nodes a side has.
+  int nodes() const { return nodes_; }
+
+  /// At a node, 0 <= x, y < nodes().
+  const Values& node(int x, int y) const {
+    return values_[static_cast<size_t>(y) * static_cast<size_t>(nodes_) + static_cast<size_t>(x)];
+  }
+
   /// Outside the square, the nearest border.
   Values at(float x_m, float y_m) const {
     const float last = static_cast<float>(nodes_ - 1);
@@ -32,8 +40,7 @@ class CoarseMap {
     const int x0 = std::min(static_cast<int>(cx), nodes_ - 2),
               y0 = std::min(static_cast<int>(cy), nodes_ - 2);
     const float fx = cx - static_cast<float>(x0), fy = cy - static_cast<float>(y0);
-    const Values* top =
-        values_.data() + static_cast<size_t>(y0) * static_cast<size_t>(nodes_) + static_cast<size_t>(x0);
+    const Values* top = &node(x0, y0);
     const Values* bottom = top + nodes_;
     const float w00 = (1.0f - fx) * (1.0f - fy), w10 = fx * (1.0f - fy), w01 = (1.0f - fx) * fy,
                 w11 = fx * fy;

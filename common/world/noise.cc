@@ -79,4 +79,11 @@ SiteDistances cellularNoise(uint64_t seed, int period, float x, float y) {
   return found;
 }
 
+float cosineOfTurns(float turns) {
+  const float t = turns - std::floor(turns) - 0.5f;  // 0 where the cosine is -1
+  const float x = 39.478418f * t * t;                // (2 pi t)^2
+  // The power series to the tenth degree in t.
+  return x * (0.5f - x * (1.0f / 24 - x * (1.0f / 720 - x * (1.0f / 40320 - x / 3628800)))) - 1.0f;
+}
+
 }  // namespace shoal::world

@@ -1,45 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "shoal/world/reef_world.h"
 
-#include <algorithm>
 #include <bit>
 #include <cmath>
+#include <stdexcept>
 #include <utility>
 
 #include "shoal/random.h"
+#include "shoal/world/reef_sight.h"
 
 namespace shoal::world {
 namespace {
 
-/// What the water leaves of a colour, and what it adds, at a range; by table, for exp() is slow.
-/// Source: the usual image formation under water, J e^(-c r) + B (1 - e^(-b r)); coefficients about those of
-/// clear coastal water, see Akkaynak and Treibitz, CVPR 2018.
-class Water {
- public:
-  struct Effect {
-    Color kept, added;
-  };
-
-  Water() {
-    constexpr Color kAttenuation{.085f, .030f, .025f}, kBackscatter{.035f, .045f, .050f};  // per metre
-    constexpr Color kVeil{.10f, .32f, .38f}, kGain{1.55f, 1.05f, 1.0f};  // gain: white balance
-    for (size_t i = 0; i < table_.size(); ++i) {
-      const float range_m = static_cast<float>(i) / kPerMetre;
-      for (size_t c = 0; c < 3; ++c) {
-        table_[i].kept[c] = 255.0f * kGain[c] * std::exp(-kAttenuation[c] * range_m);
-        table_[i].added[c] = 255.0f * kVeil[c] * (1.0f - std::exp(-kBackscatter[c] * range_m));
-      }
-    }
-  }
-
-  const Effect& at(float range_m) const {
-    return table_[static_cast<size_t>(std::min(range_m * kPerMetre, static_cast<float>(table_.size() - 1)))];
-  }
-
- private:
-  static constexpr float kPerMetre = 16.0f;
-  std::array<Effect, 1024> table_;  // to 64 m, beyond which the water is all there is to see
-};
+constexpr double kUsualAltitude = 8.0;  // metres
 
 uint64_t poseHash(const Pose& pose) {
   uint64_t hash = 0;
@@ -49,82 +22,115 @@ uint64_t poseHash(const Pose& pose) {
   return hash;
 }
 
-/// Depth along the optical axis at which a ray (one metre of it per metre of depth) meets the surface, to
-/// half a millimetre; 0 when it does not. `guess_m` is a height to begin with.
-double meet(const ReefSurface& surface, const Eigen::Vector3d& eye, const Eigen::Vector3d& ray,
-            float guess_m) {
-  if (!(ray.z() < 0.0)) return 0.0;
-  const auto below = [&](double depth) {  // how far the ray has sunk under the surface
-    const Eigen::Vector3d p = eye + depth * ray;
-    return surface.heightAt(static_cast<float>(p.x()), static_cast<float>(p.y())) - p.z();
-  };
-  constexpr double kClose = 5e-4;
-  // Steps straight down to the height under the point: converges where the surface is flatter than the ray.
-  double depth = (guess_m - eye.z()) / ray.z();
-  for (int i = 0; i < 6; ++i) {
-    const double sunk = below(depth);
-    if (std::abs(sunk) < kClose) return depth > 0.0 ? depth : 0.0;
-    depth += sunk / ray.z();
-  }
-  // Halving between the highest and the lowest that the surface gets: always converges.
-  double above = std::max(0.0, (ReefSurface::kMaxHeight - eye.z()) / ray.z());
-  double under = (ReefSurface::kMinHeight - eye.z()) / ray.z();
-  if (!(under > above) || below(above) > 0.0) return 0.0;  // the camera is under the ground
-  depth = 0.5 * (above + under);
-  for (double sunk = below(depth); std::abs(sunk) >= kClose && under - above > 1e-9 * under;
-       sunk = below(depth)) {
-    (sunk > 0.0 ? under : above) = depth;
-    depth = 0.5 * (above + under);
-  }
-  return depth;
+View viewOf(const Intrinsics& intrinsics, const Pose& world_from_camera) {
+  View view;
+  view.width = intrinsics.width;
+  view.height = intrinsics.height;
+  view.view_from_world = world_from_camera.linear().transpose();
+  view.eye = world_from_camera.translation();
+  view.fx = intrinsics.fx;
+  view.fy = intrinsics.fy;
+  view.cx = intrinsics.cx;
+  view.cy = intrinsics.cy;
+  return view;
 }
 
-}  // namespace
-
-ReefWorld::ReefWorld(ReefStyle style, uint64_t seed) : surface_(std::move(style), seed) {
-  for (const ReefClass& c : surface_.style().classes) classes_.push_back(c.truth);
-}
-
-Observation ReefWorld::render(const Intrinsics& intrinsics, const Pose& world_from_camera) const {
-  static const Water water;
-  checkCamera(intrinsics, world_from_camera);
+Observation blank(const Intrinsics& intrinsics, const Pose& world_from_camera) {
   const cv::Size size(intrinsics.width, intrinsics.height);
   Observation seen;
   seen.intrinsics = intrinsics;
   seen.world_from_camera = world_from_camera;
-  seen.color = cv::Mat(size, CV_8UC3, cv::Scalar::all(0));
   seen.depth_m = cv::Mat(size, CV_32FC1, cv::Scalar::all(0));
   seen.labels = cv::Mat(size, CV_8UC1, cv::Scalar::all(255));
+  return seen;
+}
 
-  const Eigen::Vector3d eye = world_from_camera.translation();
-  const uint64_t grain_key = poseHash(world_from_camera);
+}  // namespace
+
+ReefWorld::ReefWorld(ReefStyle style, uint64_t seed)
+    : scene_(std::move(style), seed), water_(scene_.style().water) {
+  for (const ReefClass& c : scene_.style().classes) classes_.push_back(c.truth);
+}
+
+Observation ReefWorld::render(const Intrinsics& intrinsics, const Pose& world_from_camera) const {
+  checkCamera(intrinsics, world_from_camera);
+  const ReefSight sight(scene_, viewOf(intrinsics, world_from_camera));
+  const uint64_t key = poseHash(world_from_camera);
+  Random random(key);
+  // The waves have moved on from one picture to the next.
+  const std::array<float, 2> waves{20.0f + 10.0f * static_cast<float>(random.uniform()),
+                                   20.0f + 10.0f * static_cast<float>(random.uniform())};
+  const Eigen::Matrix3f turn = world_from_camera.linear().cast<float>();
+  const Eigen::Vector3f along_row = turn.col(0) / static_cast<float>(intrinsics.fx);
+  const Eigen::Vector3f eye = world_from_camera.translation().cast<float>();
+  const float middle_x = 0.5f * static_cast<float>(intrinsics.width - 1),
+              middle_y = 0.5f * static_cast<float>(intrinsics.height - 1);
+  const float per_corner = 1.0f / (middle_x * middle_x + middle_y * middle_y + 1.0f);
+
+  Observation seen = blank(intrinsics, world_from_camera);
+  Film film(intrinsics.width, intrinsics.height);
   for (int v = 0; v < intrinsics.height; ++v) {
-    cv::Vec3b* color = seen.color.ptr<cv::Vec3b>(v);
+    const float* depth = sight.raster().depths(v);
     float* depth_m = seen.depth_m.ptr<float>(v);
-    uint8_t* label = seen.labels.ptr<uint8_t>(v);
-    float guess_m = 0.0f;
+    uint8_t* labels = seen.labels.ptr<uint8_t>(v);
+    const Eigen::Vector3f row_ray = turn * intrinsics.unproject(0, v, 1.0).cast<float>();
     for (int u = 0; u < intrinsics.width; ++u) {
-      const Eigen::Vector3d ray = world_from_camera.linear() * intrinsics.unproject(u, v, 1.0);
-      const double depth = meet(surface_, eye, ray, guess_m);
-      const Eigen::Vector3d p = eye + depth * ray;
-      const bool hit = depth > 0.0 && p.x() >= 0.0 && p.x() < ReefSurface::kSide &&
-                       p.y() > -ReefSurface::kSide && p.y() <= 0.0;
-      if (!hit) continue;
-      guess_m = static_cast<float>(p.z());
-      const SeabedPoint point = surface_.at(static_cast<float>(p.x()), static_cast<float>(p.y()));
-      const Water::Effect& effect = water.at(static_cast<float>(depth * ray.norm()));
-      // Two 10-bit draws a channel make triangular noise; three grey levels of it, give or take.
-      const uint64_t grain = mix64(grain_key + static_cast<uint64_t>(v) * 65536 + static_cast<uint64_t>(u));
-      for (size_t c = 0; c < 3; ++c) {
-        const auto draw = [&](size_t i) { return static_cast<float>(grain >> (10 * i) & 1023); };
-        const float noise = (draw(2 * c) + draw(2 * c + 1) - 1023.0f) * (7.0f / 1023.0f);
-        const float value = point.color[c] * effect.kept[c] + effect.added[c] + noise + 0.5f;
-        color[u][static_cast<int>(2 - c)] = static_cast<uint8_t>(std::clamp(value, 0.0f, 255.0f));
-      }
-      depth_m[u] = static_cast<float>(depth);
-      label[u] = point.label;
+      if (depth[u] == Raster::kNothing) continue;
+      const Eigen::Vector3f ray = row_ray + static_cast<float>(u) * along_row;
+      const ReefPoint point = sight.at(v, u, eye + depth[u] * ray, waves);
+      Color light = water_.seen(point.color, depth[u] * std::sqrt(ray.squaredNorm()));
+      const float x = static_cast<float>(u) - middle_x, y = static_cast<float>(v) - middle_y;
+      const float vignette = 1.0f - 0.38f * (x * x + y * y) * per_corner;
+      for (float& channel : light) channel *= vignette;
+      film.at(v, u) = light;
+      depth_m[u] = depth[u];
+      labels[u] = point.label;
     }
   }
+  film.expose();
+  film.soften();
+  seen.color = film.develop(key);
+  seen.color.setTo(cv::Scalar::all(0), seen.labels == 255);
+  return seen;
+}
+
+Observation ReefWorld::fromAbove(const Extent& area, double metres_per_pixel) const {
+  if (!(metres_per_pixel > 0.0) || !std::isfinite(metres_per_pixel)) {
+    throw std::invalid_argument("metres_per_pixel must be finite and > 0, got " +
+                                std::to_string(metres_per_pixel));
+  }
+  constexpr double kMost = 50.0, kSide = ReefScene::kSide;
+  const double width = area.max_x - area.min_x, height = area.max_y - area.min_y;
+  if (!(width > 0.0 && width <= kMost && height > 0.0 && height <= kMost && area.min_x >= 0.0 &&
+        area.max_x <= kSide && area.min_y >= -kSide && area.max_y <= 0.0)) {
+    throw std::invalid_argument("a map's area must lie in the reef and be at most 50 m a side, got " +
+                                std::to_string(width) + " x " + std::to_string(height) + " m");
+  }
+  // From so far up that rays are parallel but for millimetres.
+  constexpr double kUp = 8000.0;
+  Intrinsics camera;
+  camera.width = std::max(1, static_cast<int>(std::lround(width / metres_per_pixel)));
+  camera.height = std::max(1, static_cast<int>(std::lround(height / metres_per_pixel)));
+  camera.fx = camera.fy = kUp / metres_per_pixel;
+  camera.cx = 0.5 * (camera.width - 1);
+  camera.cy = 0.5 * (camera.height - 1);
+  const Pose pose = lookingDown({0.5 * (area.min_x + area.max_x), 0.5 * (area.min_y + area.max_y), kUp});
+  checkCamera(camera, pose);
+  const ReefSight sight(scene_, viewOf(camera, pose));
+  Observation seen = blank(camera, pose);
+  Film film(camera.width, camera.height);
+  for (int v = 0; v < camera.height; ++v) {
+    for (int u = 0; u < camera.width; ++u) {
+      const float depth = sight.raster().depths(v)[u];
+      if (depth == Raster::kNothing) continue;
+      const Eigen::Vector3d p = pose * camera.unproject(u, v, static_cast<double>(depth));
+      const ReefPoint point = sight.at(v, u, p.cast<float>(), {20.0f, 20.0f});
+      film.at(v, u) = water_.seen(point.color, static_cast<float>(std::max(0.0, kUsualAltitude - p.z())));
+      seen.depth_m.at<float>(v, u) = static_cast<float>(p.z());
+      seen.labels.at<uint8_t>(v, u) = point.label;
+    }
+  }
+  seen.color = film.develop(0);
   return seen;
 }
 

@@ -8,7 +8,9 @@
 
 namespace shoal::world {
 
-/// What the surface of a thing on the seabed looks like from above, colour aside.
+/// What the surface of a thing on the seabed looks like from close by, colour aside. kEdge and kCaustics are
+/// no surfaces: how far borders wander; how waves focus the light (brightness about 0, lines of light up to
+/// 1).
 enum class Texture {
   kSand,
   kRubble,
@@ -19,7 +21,8 @@ enum class Texture {
   kBranchingCoral,
   kPlateCoral,
   kSponge,
-  kEdge
+  kEdge,
+  kCaustics
 };
 
 /// A square of surface that repeats seamlessly, precomputed with one texel per 4 cm.
@@ -27,37 +30,40 @@ class TextureTile {
  public:
   static constexpr float kTexelsPerMetre = 25.0f;
 
-  /// What the tile holds at a point: each in [-1, 1].
+  /// What the tile holds at a point.
   struct Sample {
-    float brightness;  ///< lighter or darker than the mean
-    float mix;         ///< towards the first (-1) or the second (1) colour
+    float brightness;      ///< lighter or darker than the mean, [-1, 1]
+    float mix;             ///< towards the first (-1) or the second (1) colour
+    float rise_x, rise_y;  ///< slope of the relief, [-1, 1]
   };
 
   TextureTile(Texture texture, uint64_t seed);
 
-  /// Bilinear; x and y in metres, above -1000 m.
+  /// Bilinear, to a sixteenth of a texel; x and y in metres, above -1000 m.
   Sample at(float x_m, float y_m) const {
-    constexpr int kOffset = 1 << 15;  // a whole number of tiles; makes truncation rounding down
-    const float x = x_m * kTexelsPerMetre + kOffset, y = y_m * kTexelsPerMetre + kOffset;
-    const int x_floor = static_cast<int>(x), y_floor = static_cast<int>(y);
-    const float fx = x - static_cast<float>(x_floor), fy = y - static_cast<float>(y_floor);
-    const int x0 = x_floor & mask_, x1 = (x_floor + 1) & mask_;
-    const Texel* top = texels_.data() + static_cast<size_t>(y_floor & mask_) * side();
-    const Texel* bottom = texels_.data() + static_cast<size_t>((y_floor + 1) & mask_) * side();
-    const float w00 = (1.0f - fx) * (1.0f - fy), w10 = fx * (1.0f - fy), w01 = (1.0f - fx) * fy,
-                w11 = fx * fy;
-    const auto blend = [&](size_t c) {
-      return (w00 * top[x0][c] + w10 * top[x1][c] + w01 * bottom[x0][c] + w11 * bottom[x1][c]) *
-             (1.0f / 127.0f);
+    constexpr float kOffset = 1 << 15;  // a whole number of tiles; makes truncation rounding down
+    const uint32_t x = static_cast<uint32_t>((x_m * kTexelsPerMetre + kOffset) * 16.0f),
+                   y = static_cast<uint32_t>((y_m * kTexelsPerMetre + kOffset) * 16.0f);
+    const uint32_t x0 = (x >> 4) & mask_, x1 = ((x >> 4) + 1) & mask_;
+    const Texel* top = texels_.data() + static_cast<size_t>((y >> 4) & mask_) * side();
+    const Texel* bottom = texels_.data() + static_cast<size_t>(((y >> 4) + 1) & mask_) * side();
+    const uint64_t fx = x & 15, fy = y & 15;
+    // All four lanes at once: the weights add up to 256, so that no lane runs over.
+    const uint64_t sum =
+        (16 - fy) * ((16 - fx) * top[x0] + fx * top[x1]) + fy * ((16 - fx) * bottom[x0] + fx * bottom[x1]);
+    const auto lane = [&](int i) {
+      return static_cast<float>(static_cast<int>(sum >> (16 * i) & 0xffff)) * (1.0f / 256 / 127) -
+             128.0f / 127;
     };
-    return {blend(0), blend(1)};
+    return {lane(0), lane(1), lane(2), lane(3)};
   }
 
  private:
-  using Texel = std::array<int8_t, 2>;  // brightness, mix; in 1 / 127
+  /// Brightness, mix and slopes, the lowest first, in lanes of 16 bits: 128 + 127 x value.
+  using Texel = uint64_t;
   size_t side() const { return static_cast<size_t>(mask_) + 1; }
 
-  int mask_;  // side - 1, the side a power of two
+  uint32_t mask_;  // side - 1, the side a power of two
   std::vector<Texel> texels_;
 };
 

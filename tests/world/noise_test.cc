@@ -54,6 +54,13 @@ TEST(NoiseTest, KnowsTheNearerOfTwoSites) {
   }
 }
 
+TEST(NoiseTest, KnowsTheCosineToAFewThousandths) {
+  for (int i = -3000; i <= 3000; ++i) {
+    const float turns = static_cast<float>(i) / 777.0f;
+    EXPECT_NEAR(cosineOfTurns(turns), std::cos(6.283185307179586 * static_cast<double>(turns)), 0.002);
+  }
+}
+
 TEST(TextureTileTest, RepeatsSeamlesslyAndStaysInRange) {
   for (const Texture texture : {Texture::kSand, Texture::kRock, Texture::kEdge}) {
     const TextureTile tile(texture, 3);
@@ -85,6 +92,19 @@ TEST(TextureTileTest, IsBilinearBetweenTexels) {
     EXPECT_NEAR(at(0.02f, 0), 0.5f * (at(0, 0) + at(0.04f, 0)), 0.01f);
     EXPECT_NEAR(at(0, 0.02f), 0.5f * (at(0, 0) + at(0, 0.04f)), 0.01f);
   }
+}
+
+// Slopes are those of the relief that made them, so they add up to nothing around the tile.
+TEST(TextureTileTest, RisesAsMuchAsItFalls) {
+  const TextureTile tile(Texture::kSand, 3);
+  double sum = 0, most = 0;
+  for (int i = 0; i < 512; ++i) {
+    const float rise = tile.at(0.04f * static_cast<float>(i), 3.0f).rise_x;
+    sum += static_cast<double>(rise);
+    most = std::max(most, std::abs(static_cast<double>(rise)));
+  }
+  EXPECT_NEAR(sum / 512, 0, 0.004);
+  EXPECT_GT(most, 0.1);
 }
 
 TEST(CoarseMapTest, IsBilinearBetweenNodesAndConstantBeyond) {
