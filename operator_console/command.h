@@ -14,6 +14,7 @@ using Action = std::function<int()>;
 // Each adds a subcommand to `app` that sets `chosen` when it is the one. Both outlive parsing.
 void addLaunchCommand(CLI::App& app, Action& chosen);
 void addMatchCommand(CLI::App& app, Action& chosen);
+void addPlayCommand(CLI::App& app, Action& chosen);
 
 /// status, labels, at X Y, export: one grammar for a running node, a finished run and a recording.
 void addQuestionCommands(CLI::App& app, Action& chosen);

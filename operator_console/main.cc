@@ -28,6 +28,7 @@ int main(int argc, char** argv) {
   app.fallthrough();
   console::addLaunchCommand(app, chosen);
   console::addMatchCommand(app, chosen);
+  console::addPlayCommand(app, chosen);
   console::addEvaluateCommand(app, chosen);
   console::addReproduceCommand(app, chosen);
   console::addTuneCommand(app, chosen);

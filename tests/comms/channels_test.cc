@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "shoal/comms/channels.h"
 
+#include "shoal/comms/camera_channels.h"
+
 #include <stdexcept>
 #include <string>
 
@@ -39,6 +41,19 @@ TEST(ChannelsTest, RefusesToComposeThem) {
   EXPECT_THROW(channelName("R03", ""), std::invalid_argument);
   EXPECT_THROW(channelName("R03", "TOPICS_2"), std::invalid_argument);
   EXPECT_THROW(channelName("R03", std::string(54, 'K')), std::invalid_argument);
+}
+
+TEST(CameraChannelsTest, AreThePrefixAndWhatTheyCarry) {
+  const CameraChannels channels("AUV2_front");
+  EXPECT_EQ(channels.image, "AUV2_front_IMAGE");
+  EXPECT_EQ(channels.depth, "AUV2_front_DEPTH");
+  EXPECT_EQ(channels.images, "AUV2_front_IMAGES");
+  EXPECT_EQ(channels.pose, "AUV2_front_POSE");
+  for (const std::string& bad : {std::string(), std::string("CAM 1"), std::string("CAM.*"),
+                                 std::string("SHOAL_R00"), std::string(57, 'A')}) {
+    EXPECT_THROW(CameraChannels{bad}, std::invalid_argument) << bad;
+  }
+  EXPECT_EQ(CameraChannels(std::string(56, 'A')).images.size(), 63u);
 }
 
 }  // namespace

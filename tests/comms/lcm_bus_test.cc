@@ -16,6 +16,7 @@
 
 #include <gtest/gtest.h>
 
+#include "shoal/comms/camera_channels.h"
 #include "shoal/comms/kernel_limits.h"
 #include "shoal/comms/lcm_url.h"
 #include "shoal/comms/sender.h"
@@ -206,6 +207,47 @@ TEST(LcmBusWithoutARouteTest, SaysWhichCommandHelps) {
         << error.what();
   }
   ASSERT_EQ(std::system("ip route add 224.0.0.0/4 dev lo"), 0);
+}
+
+// A camera's pictures are larger than a datagram; LCM cuts them and puts them together.
+TEST(LcmBusTest, CarriesALargeMessageOnAChannelOfOthers) {
+  LcmBusOptions options;
+  options.channels = CameraChannels("CAM").all();
+  options.max_message_bytes = 1 << 20;
+  LcmBus camera(kUrl, options), robot(kUrl, options), ours(kUrl);
+  Bytes picture(300'000);
+  for (size_t i = 0; i < picture.size(); ++i) picture[i] = static_cast<uint8_t>(i * 7 + i / 251);
+  camera.publish(packet("CAM_IMAGE", picture));
+  camera.publish(packet("CAM_POSE", {1, 2, 3}));
+  const auto heard = hear(robot, 2);
+  ASSERT_EQ(heard.size(), 2u);
+  EXPECT_EQ(heard[0].channel, "CAM_IMAGE");
+  EXPECT_EQ(heard[0].bytes, picture);
+  EXPECT_EQ(heard[1].channel, "CAM_POSE");
+  EXPECT_EQ(ours.receive(100, [](const Packet&) {}), 0);
+}
+
+TEST(LcmBusTest, RefusesWhatIsLargerThanTheOptionsSay) {
+  LcmBusOptions large, small;
+  large.channels = small.channels = {"CAM_IMAGE"};
+  large.max_message_bytes = 1 << 20;
+  small.max_message_bytes = 100'000;
+  LcmBus camera(kUrl, large), robot(kUrl, small);
+  camera.publish(packet("CAM_IMAGE", Bytes(100'000)));
+  camera.publish(packet("CAM_IMAGE", Bytes(99'000)));
+  EXPECT_EQ(hear(robot, 1).size(), 1u);
+  EXPECT_EQ(robot.counts().bad_size, 1u);
+}
+
+TEST(LcmBusTest, ChannelsOfOthersHavePlainNames) {
+  for (const char* bad : {"", "CAM IMAGE", "CAM.*", "CAM-IMAGE"}) {
+    LcmBusOptions options;
+    options.channels = {bad};
+    EXPECT_THROW(LcmBus(kUrl, options), std::invalid_argument) << bad;
+  }
+  LcmBusOptions options;
+  options.max_message_bytes = 100;
+  EXPECT_THROW(LcmBus(kUrl, options), std::invalid_argument);
 }
 
 }  // namespace
