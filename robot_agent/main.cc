@@ -48,7 +48,7 @@ constexpr std::string_view kLive = "lcm:";
 bool isLive(const Flags& flags) { return flags.source.starts_with(kLive); }
 
 /// A real robot's cameras.
-Source openLive(const Flags& flags) {
+Source openLive(const Flags& flags, int robot) {
   const auto need = [&flags](bool there, const std::string& what) {
     if (!there) throw std::invalid_argument("--source " + flags.source + " needs " + what);
   };
@@ -72,7 +72,7 @@ Source openLive(const Flags& flags) {
       std::make_unique<comms::LcmBus>(flags.source_url.empty() ? flags.url : flags.source_url, bus);
   from.source = world::withSensors(
       std::make_unique<robot_agent::CameraStream>(*from.cameras, prefix, options, flags.source_timeout_s),
-      flags.survey.sensors, 0, flags.agent.explorer.seed);
+      flags.survey.sensors, robot, flags.agent.explorer.seed);
   from.cell_size_m = flags.survey.cell_size_m;
   from.what = "what " + prefix + "_IMAGE, _DEPTH, _IMAGES and _POSE say on " + from.cameras->url();
   return from;
@@ -114,7 +114,7 @@ int run(Flags flags) {
   options.rate = fusion_node::parseRate(flags.rate);
   options.matcher.sigma = fusion_node::parseSigma(flags.sigma);
 
-  const Source from = isLive(flags) ? openLive(flags) : openPlace(flags, number(*id));
+  const Source from = isLive(flags) ? openLive(flags, number(*id)) : openPlace(flags, number(*id));
   options.explorer.cell_size_m = from.cell_size_m;
   world::ObservationSource& source = *from.source;
   if (flags.single) {

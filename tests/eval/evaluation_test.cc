@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "shoal/eval/evaluation.h"
 
+#include <cmath>
+#include <memory>
+#include <utility>
+
 #include <gtest/gtest.h>
 
 #include "shoal/eval/cell_truth.h"
+#include "shoal/world/ortho_world.h"
 
 namespace shoal::eval {
 namespace {
@@ -76,6 +81,61 @@ TEST(TruthForTest, IsTheProjectionOfEverybodysFrames) {
   ASSERT_GT(seen.size(), 1000u);
   for (const CellIndex& cell : seen) ASSERT_EQ(truth(cell), expected.at(cell));
   EXPECT_EQ(truth({1 << 20, 0, 0}), std::nullopt);
+}
+
+// A flat world of 8 m x 6 m, in cells of 2 m centred at even metres: 5 x 4 columns, of which those on the
+// edge count when their centre lies inside.
+TEST(CoverageOfTest, CountsTheColumnsOfTheExtent) {
+  const auto place = world::makePlace(std::make_unique<world::OrthoWorld>(
+      "meadow", cv::Mat(6, 8, CV_8UC3, cv::Scalar(0)), cv::Mat(), 1.0, std::vector<world::TruthClass>{}));
+  // X in -.5 .. 7.5, Y in -5.5 .. .5: centres 0, 2, 4, 6 and 0, -2, -4.
+  const std::vector<CellIndex> cells{{0, 0, 0}, {0, 0, 3}, {1, -1, 0}, {9, 9, 0}};
+  EXPECT_DOUBLE_EQ(coverageOf(cells, *place, {}, world::Grid(2.0)), 2.0 / 12.0);
+}
+
+// What a robot saw and gave no word to is not covered: here the left half of one picture from 1 m.
+TEST(CoverageOfTest, OfARecordingCountsTheColumnsItSaw) {
+  class OneFrame : public world::Place {
+   public:
+    const std::string& name() const override { return name_; }
+    const std::vector<world::TruthClass>& classes() const override { return classes_; }
+    int maxRobots() const override { return 1; }
+    bool isRecorded() const override { return true; }
+    world::SurveyOptions completed(world::SurveyOptions options) const override { return options; }
+    std::unique_ptr<world::ObservationSource> source(const world::SurveyOptions&, int, bool) const override {
+      class Source : public world::ObservationSource {
+       public:
+        std::optional<world::Observation> next() override {
+          if (std::exchange(taken_, true)) return std::nullopt;
+          world::Observation seen;
+          seen.intrinsics = {10, 4, 1.0, 1.0, 0.0, 0.0};  // a metre a pixel: X = u, Y = -v
+          seen.depth_m = cv::Mat(4, 10, CV_32FC1, cv::Scalar(1));
+          seen.depth_m.at<float>(0, 9) = NAN;
+          seen.depth_m.at<float>(1, 9) = 0;
+          seen.world_from_camera = world::lookingDown({0, 0, 1});
+          return seen;
+        }
+        std::optional<int32_t> numObservations() const override { return 1; }
+
+       private:
+        bool taken_ = false;
+      };
+      return std::make_unique<Source>();
+    }
+    std::optional<world::Extent> extent() const override { return std::nullopt; }
+    std::optional<uint8_t> truthOfSquare(const world::Grid&, const CellIndex&) const override {
+      return std::nullopt;
+    }
+    bool hasFlatTruth() const override { return false; }
+
+   private:
+    std::string name_ = "one";
+    std::vector<world::TruthClass> classes_;
+  };
+  std::vector<CellIndex> cells;
+  for (int x = 0; x < 5; ++x)
+    for (int y = 0; y < 4; ++y) cells.push_back({x, -y, 0});
+  EXPECT_DOUBLE_EQ(coverageOf(cells, OneFrame(), {}, world::Grid(1.0)), 20.0 / 38.0);
 }
 
 }  // namespace

@@ -176,6 +176,9 @@ class Mission(unittest.TestCase):
     def test_what_is_wrong_is_said_in_one_line(self):
         cases = [
             (2, ["launch", "--world", "no/such/folder", "--out", self.top + "/x"]),
+            (2, ["launch", "--world", "lcm:CAM", "--out", self.top + "/x"]),
+            (2, ["launch", "--world", "reef:tuning", "--depth-holes", "2", "--out", self.top + "/x"]),
+            (2, ["launch", "--world", "reef:tuning", "--camera", "no/camera.json", "--out", self.top + "/x"]),
             (2, ["launch", "--world", "reef:nowhere", "--out", self.top + "/x"]),
             (2, ["launch", "--world", "reef:tuning", "--out", self.a]),  # holds a finished mission
             (2, ["launch", "--world", "reef:tuning", "--matcher", "shoal", "--out", self.top + "/x"]),
@@ -209,6 +212,49 @@ class Mission(unittest.TestCase):
         check_schema("summary", summary)
         self.assertEqual(summary["cell_size_m"], 24)
         self.assertGreater(summary["scores"]["scored"], 1000)
+
+
+@unittest.skipUnless("SHOAL_DATA" in os.environ, "the recordings are elsewhere")
+class Recordings(unittest.TestCase):
+    """RGB-D recordings fly again."""
+
+    def setUp(self):
+        self.top = tempfile.mkdtemp(prefix="shoal_recordings_")
+        self.addCleanup(shutil.rmtree, self.top)
+        self.out = os.path.join(self.top, "out")
+
+    def fly(self, name, *more):
+        world = os.path.join(os.environ["SHOAL_DATA"], name)
+        done = run(CONSOLE, "launch", "--world", world, "--out", self.out, *more)
+        with open(os.path.join(self.out, "summary.json"), encoding="utf-8") as file:
+            summary = json.load(file)
+        check_schema("summary", summary)
+        return world, summary, done
+
+    def test_a_team_flies_and_is_scored_by_its_labelled_frames(self):
+        world, summary, _ = self.fly("uav_dubai_tile5", "--observations", "8", "--single")
+        self.assertEqual(summary["robots"], ["R00", "R01", "R02", "R03"])
+        self.assertEqual(summary["observations"], 8)
+        self.assertTrue(summary["converged"])
+        self.assertGreater(summary["scores"]["scored"], 0.9 * summary["cells"])
+        self.assertGreater(summary["coverage"], 0.8)
+        scores = ask("evaluate", "--run", self.out, "--world", world)
+        check_schema("evaluate", scores)
+        self.assertEqual(scores, summary["scores"])
+        self.assertEqual(len(read(os.path.join(self.out, "single", "poses.txt")).splitlines()), 32)
+
+    def test_an_unlabelled_recording_flies_without_scores(self):
+        world, summary, done = self.fly("rgbd_redkitchen", "--observations", "10", "--robots", "1")
+        self.assertEqual(summary["scores"], {})
+        self.assertEqual(done.stdout, "")
+        heights = {line.split(",")[2] for line in read(os.path.join(self.out, "global_map.csv")).decode().splitlines()[1:]}
+        self.assertGreater(len(heights), 3, "cells are in three dimensions")
+        self.assertIn("no labels", run(CONSOLE, "evaluate", "--run", self.out, "--world", world).stdout)
+
+    def test_more_robots_than_were_recorded_are_refused(self):
+        world = os.path.join(os.environ["SHOAL_DATA"], "uav_dubai_tile5")
+        done = run(CONSOLE, "launch", "--world", world, "--robots", "5", "--out", self.out, expect=2)
+        self.assertIn("recording of 4 robots", done.stderr)
 
 
 class ByHand(unittest.TestCase):
