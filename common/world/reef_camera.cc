@@ -14,7 +14,7 @@ float decay(float x) { return 1.0f - x * (1.0f - x * (0.5f - x * (1.0f / 6 - x /
 }  // namespace
 
 WaterColumn::WaterColumn(const Water& water) {
-  constexpr Color kWhiteBalance{1.60f, 1.12f, 1.10f};  // of a diver's camera
+  constexpr Color kWhiteBalance{1.70f, 1.11f, 1.12f};  // of a diver's camera
   Color kept = kWhiteBalance, clear{1.0f, 1.0f, 1.0f};
   for (Effect& effect : table_) {
     for (size_t c = 0; c < 3; ++c) {

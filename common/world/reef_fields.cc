@@ -100,7 +100,7 @@ std::array<float, 8> ReefFields::groundAt(const ReefStyle& style, float x, float
   const float threshold = 0.5f - shaded_part;
   const float shade = smoothstep(threshold - 0.06f, threshold + 0.10f, noise(kShade, 26.0f, 3, x, y));
   sun = (1.0f + 0.15f * noise(kSunlight, 60.0f, 2, x, y)) * (1.0f - 0.72f * shade);
-  mix = 1.1f * noise(kMix, 35.0f, 3, x, y);
+  mix = 1.5f * noise(kMix, 30.0f, 4, x, y);
   return ground;
 }
 

@@ -72,7 +72,7 @@ std::vector<Part> stones(Dice& dice) {
     const Vector3f lengths(size, size * dice.between(0.4f, 0.9f), size * dice.between(0.3f, 0.6f));
     parts.push_back({solid({place.x(), place.y(), 0.25f * size},
                            heading(dice.between(0, 1), dice.between(0.7f, 1)), dice.between(0, 1), lengths),
-                     dice.between(0.72f, 1.2f)});
+                     dice.between(0.9f, 1.4f)});
   }
   return parts;
 }
@@ -185,7 +185,7 @@ std::vector<Part> blades(Dice& dice) {
     const Vector3f up = heading(0.08f + dice.between(-0.07f, 0.07f), dice.between(0.25f, 0.7f));
     const float length = dice.between(0.18f, 0.4f);
     parts.push_back({solid(place + length * up, up, dice.between(0, 1), {0.055f, 0.028f, length}),
-                     dice.between(0.75f, 1.25f)});
+                     dice.between(0.9f, 1.45f)});
   }
   return parts;
 }

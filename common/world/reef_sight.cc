@@ -144,16 +144,17 @@ void ReefSight::drawShadows(const Extent& area) {
 
 float ReefSight::sunlit(const Vector3f& p) const {
   constexpr float kBias = 0.08f;  // metres: a surface does not shade itself
-  const Vector3f at = shadow_pixel_from_world_.leftCols<3>() * p + shadow_pixel_from_world_.col(3);
+  const auto& m = shadow_pixel_from_world_;
+  const auto along = [&](int i) { return m(i, 0) * p.x() + m(i, 1) * p.y() + m(i, 2) * p.z() + m(i, 3); };
+  const float x = along(0), y = along(1), depth = along(2) - kBias;
   const View& view = shadows_.view();
-  if (!(at.x() >= 0.0f && at.y() >= 0.0f && at.x() < static_cast<float>(view.width - 1) &&
-        at.y() < static_cast<float>(view.height - 1)))
+  if (!(x >= 0.0f && y >= 0.0f && x < static_cast<float>(view.width - 1) &&
+        y < static_cast<float>(view.height - 1)))
     return 1.0f;
-  const int column = static_cast<int>(at.x()), row = static_cast<int>(at.y());
-  const float fx = at.x() - static_cast<float>(column), fy = at.y() - static_cast<float>(row);
+  const int column = static_cast<int>(x), row = static_cast<int>(y);
+  const float fx = x - static_cast<float>(column), fy = y - static_cast<float>(row);
   const float* top = shadows_.depths(row) + column;
   const float* bottom = shadows_.depths(row + 1) + column;
-  const float depth = at.z() - kBias;
   const auto open = [&](float occluder) { return occluder < depth ? 0.0f : 1.0f; };
   return (1.0f - fy) * ((1.0f - fx) * open(top[0]) + fx * open(top[1])) +
          fy * ((1.0f - fx) * open(bottom[0]) + fx * open(bottom[1]));
@@ -201,10 +202,10 @@ ReefPoint ReefSight::onGround(const Vector3f& p, const std::array<float, 2>& wav
   const ReefFields::Relief relief = scene_.fields().relief(x, south);
   std::array<float, 4> kinds = ground.kinds;
   const TextureTile::Sample edge = scene_.edges().at(x, south);
-  kinds[1] += 0.22f * edge.brightness;
-  kinds[2] += 0.30f * edge.mix;
+  kinds[1] += 0.30f * edge.brightness;
+  kinds[2] += 0.36f * edge.mix;
   const float steep = std::sqrt(relief.rise_x * relief.rise_x + relief.rise_y * relief.rise_y);
-  kinds[3] += 1.2f * std::max(0.0f, steep - 0.3f) - 0.18f * edge.brightness;
+  kinds[3] += 1.2f * std::max(0.0f, steep - 0.3f) - 0.26f * edge.brightness;
 
   size_t best = 0, second = 1;
   if (kinds[1] > kinds[0]) std::swap(best, second);

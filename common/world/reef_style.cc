@@ -7,21 +7,21 @@ namespace shoal::world {
 namespace {
 
 ReefClass sand() {
-  return {{0, "sand", {222, 205, 160}}, Texture::kSand, {.80f, .74f, .58f}, {.70f, .69f, .60f}, .22f, 1.0f};
+  return {{0, "sand", {222, 205, 160}}, Texture::kSand, {.86f, .77f, .60f}, {.53f, .58f, .43f}, .22f, 1.0f};
 }
 ReefClass rubble(int id) {
   return {
-      {id, "rubble", {170, 150, 140}}, Texture::kRubble, {.66f, .60f, .50f}, {.54f, .50f, .46f}, .38f, .7f};
+      {id, "rubble", {170, 150, 140}}, Texture::kRubble, {.76f, .66f, .54f}, {.46f, .49f, .41f}, .38f, .7f};
 }
 ReefClass rock(int id) {
-  return {{id, "rock", {95, 90, 90}}, Texture::kRock, {.42f, .40f, .37f}, {.50f, .44f, .34f}, .40f, 1.0f};
+  return {{id, "rock", {95, 90, 90}}, Texture::kRock, {.40f, .38f, .38f}, {.58f, .52f, .40f}, .50f, 1.5f};
 }
 ReefClass algae(int id) {
-  return {{id, "algae", {110, 130, 50}}, Texture::kAlgae, {.40f, .44f, .24f}, {.54f, .48f, .30f}, .40f, .8f};
+  return {{id, "algae", {110, 130, 50}}, Texture::kAlgae, {.38f, .45f, .25f}, {.64f, .55f, .43f}, .40f, .8f};
 }
 ReefClass seagrass(int id) {
   return {
-      {id, "seagrass", {40, 130, 70}}, Texture::kSeagrass, {.30f, .42f, .22f}, {.44f, .50f, .30f}, .45f, .8f};
+      {id, "seagrass", {40, 130, 70}}, Texture::kSeagrass, {.28f, .41f, .23f}, {.60f, .57f, .43f}, .45f, .8f};
 }
 ReefClass brainCoral(int id) {
   return {{id, "brain coral", {220, 160, 60}},
@@ -34,8 +34,8 @@ ReefClass brainCoral(int id) {
 ReefClass branchingCoral(int id) {
   return {{id, "branching coral", {200, 90, 150}},
           Texture::kBranchingCoral,
-          {.56f, .44f, .42f},
-          {.82f, .70f, .62f},
+          {.58f, .46f, .38f},
+          {.88f, .72f, .66f},
           .30f,
           .5f};
 }
@@ -63,9 +63,9 @@ ReefStyle sparse() {
   terrain.shade = 0.3f;
   terrain.ledge_m = 0.3f;
   terrain.growths = {
-      {1, Form::kStones, .6f, .4f, .8f, 3, 1},     {2, Form::kTuft, .6f, .3f, .6f, 4, 2},
-      {3, Form::kBoulder, .10f, .5f, 2.6f, 4, -1}, {4, Form::kDome, .09f, .4f, 2.0f, 5, -1},
-      {5, Form::kAntlers, .12f, .6f, 1.8f, 7, -1}, {6, Form::kBarrels, .08f, .5f, 1.3f, 6, -1}};
+      {1, Form::kStones, .6f, .4f, .8f, 3, 1},      {2, Form::kTuft, .6f, .3f, .6f, 4, 2},
+      {3, Form::kBoulder, .10f, .5f, 2.6f, 9, -1},  {4, Form::kDome, .09f, .4f, 2.0f, 12, -1},
+      {5, Form::kAntlers, .12f, .6f, 1.8f, 16, -1}, {6, Form::kBarrels, .09f, .5f, 1.3f, 9, -1}};
   style.terrains.fill(terrain);
   return style;
 }
@@ -75,7 +75,7 @@ ReefStyle tuning() {
   style.name = "reef:tuning";
   style.salt = 3;
   style.classes = {sand(), rubble(1), seagrass(2), rock(3), brainCoral(4), plateCoral(5)};
-  style.classes[0].first = {.78f, .70f, .52f};
+  style.classes[0].first = {.82f, .70f, .50f};
   style.classes[4].second = {.66f, .62f, .34f};
   style.ground = {0, 1, 2, 3};
   style.ground_width_m = 24.0f;
@@ -84,9 +84,9 @@ ReefStyle tuning() {
   terrain.shade = 0.22f;
   terrain.growths = {{1, Form::kStones, .5f, .4f, .8f, 3, 1},
                      {2, Form::kBlades, .8f, .6f, 1.0f, 3, 2},
-                     {3, Form::kBoulder, .10f, .5f, 2.2f, 4, -1},
-                     {4, Form::kDome, .09f, .4f, 1.9f, 6, -1},
-                     {5, Form::kTables, .10f, .6f, 1.9f, 5, -1}};
+                     {3, Form::kBoulder, .10f, .5f, 2.2f, 7, -1},
+                     {4, Form::kDome, .09f, .4f, 1.9f, 10, -1},
+                     {5, Form::kTables, .10f, .6f, 1.9f, 12, -1}};
   style.terrains.fill(terrain);
   return style;
 }
@@ -110,7 +110,7 @@ ReefStyle varied() {
                        {{2, Form::kBlades, .8f, .6f, 1.0f, 3, 2}, {4, Form::kDome, .05f, .4f, 1.4f, 3, 0}}};
   style.terrains[1] = {
       {.02f, -.40f, -.70f, .12f},
-      {.86f, .92f, 1.04f},
+      {.93f, .96f, 1.02f},
       .45f,
       .6f,
       .3f,
@@ -118,7 +118,7 @@ ReefStyle varied() {
       {{3, Form::kBoulder, .15f, .5f, 2.4f, 4, -1}, {7, Form::kBarrels, .30f, .5f, 1.5f, 6, -1}}};
   style.terrains[2] = {
       {-.05f, .12f, -.80f, -.60f},
-      {.98f, .92f, .90f},
+      {.98f, .95f, .92f},
       .30f,
       .5f,
       .3f,

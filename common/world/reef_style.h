@@ -50,7 +50,7 @@ struct Terrain {
 struct Water {
   Color attenuation{.085f, .030f, .025f};  ///< of what is seen, per metre
   Color backscatter{.040f, .050f, .055f};  ///< of the veil, per metre
-  Color veil{.08f, .30f, .36f};            ///< colour of water alone
+  Color veil{.06f, .27f, .37f};            ///< colour of water alone
 };
 
 /// Everything that makes one procedural reef differ from another, but for the seed.

@@ -73,7 +73,7 @@ Paint paint(Texture texture, const Canvas& c) {
       const SiteDistances s = c.sites(1, 1.5f, 0.6f);
       const float crack = std::min(1.0f, 7.0f * (s.second - s.nearest));
       const float rough = c.noise(2, 0.8f, 4);
-      return {0.25f * siteShade(s.site) - 0.5f * (1.0f - crack) + 0.6f * rough, 1.2f * c.noise(3, 1.1f, 3),
+      return {0.25f * siteShade(s.site) - 0.6f * (1.0f - crack) + 0.9f * rough, 1.2f * c.noise(3, 1.1f, 3),
               0.16f * rough + 0.05f * crack};
     }
     case Texture::kSeagrass: {  // blades that lie in the current, bare gaps
@@ -98,12 +98,10 @@ Paint paint(Texture texture, const Canvas& c) {
       return {0.45f - 1.1f * s.nearest + 0.3f * c.noise(3, 0.5f, 2),
               0.8f * c.noise(2, 1.0f, 2) - s.nearest + 0.5f, 0.02f * (1.0f - s.nearest)};
     }
-    case Texture::kPlateCoral: {  // ribs that run out from many middles, pale rims
-      const SiteDistances s = c.sites(1, 0.75f, 0.1f);
-      const float rings = cosineOfTurns(3.0f * s.nearest);
-      const float rim = std::max(0.0f, 1.0f - 6.0f * (s.second - s.nearest));
-      return {0.3f * siteShade(s.site) + 0.35f * rings + 0.3f * c.noise(2, 0.2f, 2),
-              0.5f * siteShade(s.site) + 0.6f * rim, 0.02f * rings};
+    case Texture::kPlateCoral: {  // fine ridges that wander, pale growing patches
+      const float ridges = cosineOfTurns(4.0f * c.noise(1, 0.7f, 3)), patches = c.noise(3, 0.6f, 2);
+      return {0.35f * ridges + 0.45f * c.noise(2, 0.2f, 2) + 0.35f * patches, 0.3f * ridges + 1.1f * patches,
+              0.015f * ridges};
     }
     case Texture::kSponge: {  // ribs and pores
       const SiteDistances s = c.sites(1, 0.17f, 0.05f);

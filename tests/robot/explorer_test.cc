@@ -13,7 +13,12 @@ namespace shoal::robot {
 namespace {
 
 ExplorerOptions options(int robot = 0, uint64_t seed = 1) {
-  return {.robot = world::RobotId{robot}, .profile = "paper", .seed = seed, .cell_size_m = 0.8, .epoch = 0};
+  return {.robot = world::RobotId{robot},
+          .profile = "paper",
+          .seed = seed,
+          .cell_size_m = 0.8,
+          .epoch = 0,
+          .hyperparameters = {}};
 }
 
 // Two images of a reef, 10 m apart, from 8 m above.

@@ -30,7 +30,7 @@ TEST(ReefFormsTest, AreSolidsWithOrthogonalAxesWithinTheirBounds) {
         ASSERT_LT(part.solid.center.head<2>().norm() + reach.head<2>().maxCoeff(), 1.6f);
         top = std::max(top, part.solid.center.z() + reach.z());
         ASSERT_GT(part.brightness, 0.1f);
-        ASSERT_LT(part.brightness, 1.4f);
+        ASSERT_LT(part.brightness, 1.5f);
       }
       EXPECT_GT(top, 0.05f);
       EXPECT_LT(top, 1.6f);

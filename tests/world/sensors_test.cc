@@ -41,6 +41,8 @@ class Flight final : public ObservationSource {
     return frame(next_++);
   }
   std::optional<int32_t> numObservations() const override { return frames_; }
+  bool ready() override { return next_ < 2; }
+  std::string troubles() const override { return "fog"; }
 
  private:
   int32_t frames_, next_;
@@ -69,16 +71,18 @@ TEST(SensorsTest, PerfectOnesGiveTheSourceBack) {
   EXPECT_EQ(withSensors(std::move(source), {}, 2, 5).get(), before);
 }
 
-TEST(SensorsTest, KeepNumberTimeLabelsAndTheCountOfFrames) {
+TEST(SensorsTest, KeepNumbersLabelsAndWhatTheSourceSaysOfItself) {
   const auto source = withSensors(std::make_unique<Flight>(4), kAll, 1, 7);
   EXPECT_EQ(source->numObservations(), 4);
   for (int32_t n = 0; n < 4; ++n) {
+    EXPECT_EQ(source->ready(), n < 2);
     const auto seen = source->next();
     ASSERT_TRUE(seen);
     EXPECT_EQ(seen->number, n);
     EXPECT_TRUE(same(seen->labels, Flight::frame(n).labels));
   }
   EXPECT_FALSE(source->next());
+  EXPECT_EQ(source->troubles(), "fog");
 }
 
 TEST(SensorsTest, RepeatWithTheSeedAndDifferWithTheRobotAndTheSeed) {
