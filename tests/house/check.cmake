@@ -11,7 +11,7 @@ set(mapping_may_use world matching)
 set(robot_may_use world vision topics mapping)
 set(wire_may_use world mapping)
 set(comms_may_use "")
-set(eval_may_use world matching mapping robot wire)
+set(eval_may_use world vision matching mapping robot wire)
 
 foreach(room IN LISTS ROOMS)
   include(${BUILT}/${room}.cmake)
