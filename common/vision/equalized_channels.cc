@@ -6,8 +6,24 @@
 #include <opencv2/imgproc.hpp>
 
 namespace shoal::vision {
+namespace {
+
+// OpenCV fills its tables of Lab at the first conversion without a lock: here it does so once, whatever the
+// number of threads.
+void fillLabTables() {
+  static const bool filled = [] {
+    cv::Mat pixel(1, 1, CV_8UC3, cv::Scalar::all(0)), lab;
+    cv::cvtColor(pixel, lab, cv::COLOR_BGR2Lab);
+    cv::cvtColor(lab, pixel, cv::COLOR_Lab2BGR);
+    return true;
+  }();
+  static_cast<void>(filled);
+}
+
+}  // namespace
 
 EqualizedChannels equalize(const cv::Mat& bgr) {
+  fillLabTables();
   if (bgr.empty() || bgr.type() != CV_8UC3) {
     throw std::invalid_argument("a colour picture must be CV_8UC3 and not empty");
   }
