@@ -7,8 +7,14 @@ namespace shoal::robot {
 
 topics::Hyperparameters hyperparametersOf(const std::string& profile) {
   // The published alpha, beta and gamma give a single topic at any count budget up to a hundred visits a
-  // cell; the defaults of Hyperparameters are values that work at ours. See docs/paper.md.
-  if (profile == "paper") return {};
+  // cell (docs/paper.md). These were found at commit 4525be633e20 by
+  //     operator_console tune --out DIR
+  if (profile == "paper") {
+    topics::Hyperparameters paper;
+    paper.alpha = 0.323;
+    paper.beta = 0.0593;
+    return paper;
+  }
   if (profile == "best") throw std::invalid_argument("profile \"best\" is not built yet; use \"paper\"");
   throw std::invalid_argument("unknown profile \"" + profile + "\"; profiles: paper");
 }
