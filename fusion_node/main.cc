@@ -36,7 +36,7 @@ int run(const fusion_node::NodeOptions& options, const std::string& url) {
 
 int main(int argc, char** argv) {
   fusion_node::NodeOptions options;
-  std::string url = comms::kDefaultUrl, rate = "1", mission = "shoal", log_level = "info", sigma = "0.75";
+  std::string url = comms::kDefaultUrl, rate = "1", mission = "shoal", log_level = "info", sigma = "auto";
   CLI::App app{"Hears a team of robots, matches their labels and republishes one consistent map.",
                "fusion_node"};
   app.set_version_flag("--version", std::string("fusion_node ") + version() + " (" + commit() + ")");
@@ -49,10 +49,13 @@ int main(int argc, char** argv) {
   app.add_option("--budget", options.budget, "bytes per second of mission time on the link, 0 = unlimited")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  app.add_option("--matcher", options.matcher.matcher, "id, hungarian or clear")->capture_default_str();
+  app.add_option("--matcher", options.matcher.matcher, "id, hungarian, clear or shoal")
+      ->capture_default_str();
   auto* similarity = app.add_option("--similarity", options.matcher.similarity,
-                                    "cosine, overlap, l1 or l2 (default: l2 for hungarian, else cosine)");
-  app.add_option("--sigma", sigma, "least similarity of a match, in (0, 1]")->capture_default_str();
+                                    "cosine, overlap, l1, l2 or discounted (default: the matcher's usual)");
+  app.add_option("--sigma", sigma,
+                 "least similarity of a match: auto (the matcher's usual) or a number in (0, 1]")
+      ->capture_default_str();
   app.add_option("--mission", mission, "number or name that all processes of a mission share")
       ->capture_default_str();
   app.add_option("--rate", rate, "mission seconds per wall second: 1, 10, or max = as the robots")
@@ -73,7 +76,7 @@ int main(int argc, char** argv) {
     fusion_node::catchStopSignals();
     options.mission = fusion_node::missionId(mission);
     options.rate = fusion_node::parseRate(rate);
-    options.matcher.sigma = fusion_node::parseSigma(sigma);
+    options.matcher.sigma = matching::parseSigma(sigma);
     if (similarity->count() == 0)
       options.matcher.similarity = matching::usualSimilarity(options.matcher.matcher);
     comms::channelName(options.name, "HEARTBEAT");  // a bad node name is a bad flag

@@ -73,14 +73,4 @@ double parseRate(const std::string& text) {
   return rate;
 }
 
-double parseSigma(const std::string& text) {
-  if (text == "auto") throw std::invalid_argument("sigma \"auto\" is not built yet; give a number in (0, 1]");
-  double sigma = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), sigma);
-  if (error != std::errc{} || end != text.data() + text.size() || !(sigma > 0) || sigma > 1) {
-    throw std::invalid_argument("sigma must lie in (0, 1], got " + text);
-  }
-  return sigma;
-}
-
 }  // namespace shoal::fusion_node

@@ -24,8 +24,4 @@ int32_t hostHash();
 /// @throws std::invalid_argument naming the text.
 double parseRate(const std::string& text);
 
-/// A fixed threshold. "auto" is refused by name until it is built.
-/// @throws std::invalid_argument unless it is a number in (0, 1].
-double parseSigma(const std::string& text);
-
 }  // namespace shoal::fusion_node

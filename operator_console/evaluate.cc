@@ -24,8 +24,13 @@ using Json = nlohmann::ordered_json;
 
 double rounded(double value) { return std::round(value * 1e6) / 1e6; }
 
+// null where nothing is compared with it.
+Json sigmaOf(const matching::MatcherOptions& m) {
+  return matching::usesSigma(m.matcher) ? Json(m.leastSimilarity()) : Json(nullptr);
+}
+
 struct Flags {
-  std::string run, world, matcher = "all", similarity, sigma = "0.75";
+  std::string run, world, matcher = "all", similarity, sigma = "auto";
   bool json = false, explain = false;
 };
 
@@ -45,8 +50,9 @@ void evaluate(const Flags& flags) {
     matching::match(matching::DescriptorSet{}, matchers[0]);  // an unknown matcher is refused here, by name
   }
   for (matching::MatcherOptions& options : matchers) {
-    options.sigma = fusion_node::parseSigma(flags.sigma);
-    if (!flags.similarity.empty()) options.similarity = flags.similarity;
+    options.sigma = matching::parseSigma(flags.sigma);
+    const bool fixed = flags.matcher == "all" && options.matcher == "shoal";  // it has one of its own
+    if (!flags.similarity.empty() && !fixed) options.similarity = flags.similarity;
   }
   const Evaluation result = evaluateRun(flags.run, *place, team, matchers, flags.explain);
   if (flags.json) {
@@ -69,7 +75,7 @@ Json Evaluation::json() const {
     result["matchers"][matchers[i].matcher] = {
         {"ami", rounded(scores[i].ami)}, {"ami_concatenated", rounded(ami_concatenated[i])},
         {"nmi", rounded(scores[i].nmi)}, {"labels", scores[i].labels},
-        {"sigma", matchers[i].sigma},    {"similarity", matchers[i].similarity}};
+        {"sigma", sigmaOf(matchers[i])}, {"similarity", matchers[i].similarity}};
   }
   if (single)
     result["single"] = {
@@ -133,7 +139,8 @@ std::string scoreTable(const Evaluation& e) {
     std::string what = m.matcher;
     if (m.matcher == "id") what = "ID (topic j is topic j)";
     if (m.matcher == "hungarian") what = "sequential Hungarian, " + m.similarity;
-    if (m.matcher == "clear") what = fmt::format("CLEAR, {} {:.2f}", m.similarity, m.sigma);
+    if (m.matcher == "clear") what = fmt::format("CLEAR, {} {:.2f}", m.similarity, m.leastSimilarity());
+    if (m.matcher == "shoal") what = fmt::format("Shoal {:.2f}", m.leastSimilarity());
     row(what, e.scores[i]);
   }
   if (e.single) row("one robot that saw the same area", *e.single);
@@ -147,10 +154,13 @@ void addEvaluateCommand(CLI::App& app, Action& chosen) {
   const auto flags = std::make_shared<Flags>();
   command->add_option("--run", flags->run, "folder of the mission")->required();
   command->add_option("--world", flags->world, "the world it was flown over")->required();
-  command->add_option("--matcher", flags->matcher, "all, id, hungarian or clear")->capture_default_str();
+  command->add_option("--matcher", flags->matcher, "all, id, hungarian, clear or shoal")
+      ->capture_default_str();
   command->add_option("--similarity", flags->similarity,
-                      "cosine, overlap, l1 or l2 (default: the matcher's usual)");
-  command->add_option("--sigma", flags->sigma, "least similarity of a match, in (0, 1]")
+                      "cosine, overlap, l1, l2 or discounted (default: the matcher's usual)");
+  command
+      ->add_option("--sigma", flags->sigma,
+                   "least similarity of a match: auto (the matcher's usual) or a number in (0, 1]")
       ->capture_default_str();
   command->add_flag("--explain", flags->explain,
                     "why: the ceiling of any matcher, purity by robot, what each label holds");

@@ -12,7 +12,7 @@ namespace {
 
 struct Flags {
   LaunchOptions launch;
-  std::string sigma = "0.75";
+  std::string sigma = "auto";
   std::string similarity;  // empty: the one that goes with the matcher
   std::string kill_plan;
 };
@@ -38,10 +38,12 @@ void addLaunchCommand(CLI::App& app, Action& chosen) {
       ->capture_default_str();
   command->add_option("--rate", o.rate, "mission seconds per wall second: 1, 10, or max")
       ->capture_default_str();
-  command->add_option("--matcher", o.matcher.matcher, "id, hungarian or clear")->capture_default_str();
+  command->add_option("--matcher", o.matcher.matcher, "id, hungarian, clear or shoal")->capture_default_str();
   command->add_option("--similarity", flags->similarity,
-                      "cosine, overlap, l1 or l2 (default: l2 for hungarian, else cosine)");
-  command->add_option("--sigma", flags->sigma, "least similarity of a match, in (0, 1]")
+                      "cosine, overlap, l1, l2 or discounted (default: the matcher's usual)");
+  command
+      ->add_option("--sigma", flags->sigma,
+                   "least similarity of a match: auto (the matcher's usual) or a number in (0, 1]")
       ->capture_default_str();
   command->add_option("--profile", o.profile, "words and hyper-parameters: paper")->capture_default_str();
   command->add_option("--cell-size-m", o.cell_size_m, "edge of a cell, m (default: the world's)");
@@ -79,7 +81,7 @@ void addLaunchCommand(CLI::App& app, Action& chosen) {
     chosen = [&app, flags] {
       LaunchOptions options = flags->launch;
       if (!flags->kill_plan.empty()) throw std::invalid_argument("--kill-plan is not built yet");
-      options.matcher.sigma = fusion_node::parseSigma(flags->sigma);
+      options.matcher.sigma = matching::parseSigma(flags->sigma);
       options.matcher.similarity =
           flags->similarity.empty() ? matching::usualSimilarity(options.matcher.matcher) : flags->similarity;
       options.log_level = app.get_option("--log-level")->as<std::string>();

@@ -43,9 +43,6 @@ void check(const LaunchOptions& options) {
   if (options.profile != "paper") {
     throw std::invalid_argument("--profile must be paper, got \"" + options.profile + "\"");
   }
-  if (options.matcher.matcher == "shoal") {
-    throw std::invalid_argument("--matcher shoal is not built yet; id, hungarian and clear are");
-  }
   matching::check(options.matcher);
   fusion_node::parseRate(options.rate);
   demandPositive("--frame-period-s", options.frame_period_s);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "match_file.h"
 
-#include <charconv>
 #include <chrono>
 #include <fstream>
 #include <iostream>
@@ -14,23 +13,14 @@
 namespace shoal::console {
 namespace {
 
-double parseSigma(const std::string& text) {
-  if (text == "auto") throw std::invalid_argument("--sigma auto is not built yet; a number in (0, 1] is");
-  double sigma = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), sigma);
-  if (error != std::errc() || end != text.data() + text.size()) {
-    throw std::invalid_argument("--sigma must be a number in (0, 1], got \"" + text + "\"");
-  }
-  return sigma;
-}
-
 // What the flags say, over what the file says (nothing yet in `file`), over the defaults.
 matching::MatcherOptions chosen(const MatchFileOptions& flags, const MatchInput& file) {
   matching::MatcherOptions options;
   options.matcher = flags.matcher.value_or(file.matcher.value_or("clear"));
   const std::string usual = matching::usualSimilarity(options.matcher);
   options.similarity = flags.similarity.value_or(file.similarity.value_or(usual));
-  options.sigma = flags.sigma ? parseSigma(*flags.sigma) : file.sigma.value_or(options.sigma);
+  options.sigma = flags.sigma ? matching::parseSigma(*flags.sigma) : file.sigma;
+  if (flags.distinct) options.distinct = true;
   return options;
 }
 
@@ -72,7 +62,7 @@ Result timedMatch(const MatchInput& input, const matching::MatcherOptions& optio
       std::visit([&](const auto& labels) { return matching::match(labels, options); }, input.labels);
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const bool compared = std::holds_alternative<matching::DescriptorSet>(input.labels);
-  if (compared && options.matcher == "clear") result.sigma = options.sigma;
+  if (compared && matching::usesSigma(options.matcher)) result.sigma = options.leastSimilarity();
   return result;
 }
 

@@ -13,10 +13,10 @@ struct MatchFileOptions {
   std::string path;                       ///< JSON file, "-" reads `in`
   std::optional<std::string> matcher;     ///< default "clear"
   std::optional<std::string> similarity;  ///< default the usual one of the matcher
-  std::optional<std::string> sigma;       ///< a number in (0, 1], default 0.75
-  bool distinct = false;  ///< forbids merging a robot's own labels; no matcher built yet merges them
-  bool timing = false;    ///< report the seconds that the matching took
-  bool json = false;      ///< one JSON object instead of lines of text
+  std::optional<std::string> sigma;       ///< auto or a number in (0, 1], default auto
+  bool distinct = false;                  ///< forbids merging a robot's own labels, as "shoal" does
+  bool timing = false;                    ///< report the seconds that the matching took
+  bool json = false;                      ///< one JSON object instead of lines of text
 };
 
 /// `operator_console match FILE.json`: matches the labels of several robots, given as word counts or as an

@@ -235,9 +235,9 @@ matching::DescriptorSet readDescriptors(const json& root, MatchInput& input) {
   input.similarity = readName(root, "similarity");
   if (root.contains("sigma")) {
     const json& sigma = root["sigma"];
-    if (sigma == "auto") fail("sigma \"auto\" is not built yet; a number in (0, 1] is");
-    if (!sigma.is_number()) fail("sigma must be a number in (0, 1], got " + shown(sigma));
-    input.sigma = sigma.get<double>();
+    if (!sigma.is_number() && sigma != "auto")
+      fail("sigma must be \"auto\" or a number in (0, 1], got " + shown(sigma));
+    if (sigma.is_number()) input.sigma = sigma.get<double>();
   }
   return set;
 }

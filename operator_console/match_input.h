@@ -20,7 +20,7 @@ struct MatchInput {
   std::vector<int> num_labels;            ///< of each robot
   std::optional<std::string> matcher;     ///< only beside descriptors, as the next two
   std::optional<std::string> similarity;  ///< any string
-  std::optional<double> sigma;            ///< in (0, 1]
+  std::optional<double> sigma;            ///< in (0, 1]; none: "auto", or not said
   std::vector<std::string> warnings;
 };
 

@@ -68,10 +68,10 @@ Command loggerCommand(const LaunchOptions& options) {
 Command operatorCommand(const LaunchOptions& options) {
   std::vector<std::string> arguments = {"--node", "OPERATOR"};
   append(arguments, linkArguments(options));
-  append(arguments,
-         {"--matcher", options.matcher.matcher, "--similarity", options.matcher.similarity, "--sigma",
-          text(options.matcher.sigma), "--cell-size-m", text(options.cell_size_m), "--out", options.out,
-          "--state", operatorStateDir(options), "--log-level", options.log_level});
+  append(arguments, {"--matcher", options.matcher.matcher, "--similarity", options.matcher.similarity,
+                     "--sigma", options.matcher.sigma ? text(*options.matcher.sigma) : "auto",
+                     "--cell-size-m", text(options.cell_size_m), "--out", options.out, "--state",
+                     operatorStateDir(options), "--log-level", options.log_level});
   return {"OPERATOR", programBeside("fusion_node"), arguments, logPath(options, "OPERATOR")};
 }
 

@@ -21,7 +21,7 @@ using Json = nlohmann::ordered_json;
 
 struct Question {
   Where where;
-  std::string sigma = "0.75", similarity;
+  std::string sigma = "auto", similarity;
   bool json = false;
   double x = 0, y = 0;
   std::string format, out;
@@ -33,15 +33,17 @@ void addWhere(CLI::App& command, Question& q) {
   where->add_option("--run", q.where.run, "folder of a finished mission");
   where->add_option("--log", q.where.log, "a recording made by lcm-logger");
   where->require_option(1);
-  command.add_option("--matcher", q.where.matcher.matcher, "for --log: id, hungarian or clear")
+  command.add_option("--matcher", q.where.matcher.matcher, "for --log: id, hungarian, clear or shoal")
       ->capture_default_str();
-  command.add_option("--similarity", q.similarity, "for --log: cosine, overlap, l1 or l2");
-  command.add_option("--sigma", q.sigma, "for --log: least similarity of a match")->capture_default_str();
+  command.add_option("--similarity", q.similarity, "for --log: cosine, overlap, l1, l2 or discounted");
+  command
+      .add_option("--sigma", q.sigma, "for --log: least similarity of a match: auto or a number in (0, 1]")
+      ->capture_default_str();
   command.add_flag("--json", q.json, "answer in JSON");
 }
 
 void complete(Question& q) {
-  q.where.matcher.sigma = fusion_node::parseSigma(q.sigma);
+  q.where.matcher.sigma = matching::parseSigma(q.sigma);
   q.where.matcher.similarity =
       q.similarity.empty() ? matching::usualSimilarity(q.where.matcher.matcher) : q.similarity;
 }

@@ -26,7 +26,7 @@ using namespace shoal;  // NOLINT: a main file
 struct Flags {
   std::string robot = "R00", source, url = comms::kDefaultUrl, rate = "1", mission = "shoal",
               log_level = "info";
-  std::string sigma = "0.75", checkpoint, camera, source_url;
+  std::string sigma = "auto", checkpoint, camera, source_url;
   double source_timeout_s = 0;
   int64_t source_start_us = -1;
   bool period_given = false;
@@ -112,7 +112,7 @@ int run(Flags flags) {
   options.explorer.robot = *id;
   options.mission = fusion_node::missionId(flags.mission);
   options.rate = fusion_node::parseRate(flags.rate);
-  options.matcher.sigma = fusion_node::parseSigma(flags.sigma);
+  options.matcher.sigma = matching::parseSigma(flags.sigma);
 
   const Source from = isLive(flags) ? openLive(flags, number(*id)) : openPlace(flags, number(*id));
   options.explorer.cell_size_m = from.cell_size_m;
@@ -195,10 +195,12 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--out", f.agent.out_dir, "folder for robots/RNN/{map.csv,topics.json,poses.txt}");
   app.add_flag("--fuse", f.agent.fuse, "hold everybody's beliefs and fuse them on board too");
-  auto* matcher = app.add_option("--matcher", f.agent.matcher.matcher, "for --fuse: id, hungarian or clear");
-  auto* similarity =
-      app.add_option("--similarity", f.agent.matcher.similarity, "for --fuse: cosine, overlap, l1, l2");
-  app.add_option("--sigma", f.sigma, "for --fuse: least similarity of a match, in (0, 1]")
+  auto* matcher =
+      app.add_option("--matcher", f.agent.matcher.matcher, "for --fuse: id, hungarian, clear or shoal");
+  auto* similarity = app.add_option("--similarity", f.agent.matcher.similarity,
+                                    "for --fuse: cosine, overlap, l1, l2 or discounted");
+  app.add_option("--sigma", f.sigma,
+                 "for --fuse: least similarity of a match: auto (the matcher's usual) or a number in (0, 1]")
       ->capture_default_str();
   app.add_flag("--linger", f.agent.linger, "stay after landing until told to stop");
   app.add_flag("--single", f.single, "fly everybody's shares alone, off the link, into --out itself");

@@ -154,7 +154,8 @@ Score scoreSingle(const mapping::LocalBelief& single, const TruthOfCell& truth) 
 std::vector<matching::MatcherOptions> allMatchers() {
   return {{.matcher = "id"},
           {.matcher = "hungarian", .similarity = "l2"},
-          {.matcher = "clear", .similarity = "cosine", .sigma = 0.75}};
+          {.matcher = "clear", .similarity = "cosine"},
+          {.matcher = "shoal", .similarity = "discounted"}};
 }
 
 double coverageOf(const std::vector<world::CellIndex>& cells, const world::Place& place,

@@ -12,6 +12,30 @@ namespace {
 
 std::string text(const Edge& e) { return "edge (" + std::to_string(e.i) + ", " + std::to_string(e.j) + ")"; }
 
+std::vector<const Descriptor*> inOneRow(const DescriptorSet& topics) {
+  std::vector<const Descriptor*> all;
+  for (const std::vector<Descriptor>& robot : topics.robots)
+    for (const Descriptor& topic : robot) all.push_back(&topic);
+  return all;
+}
+
+template <class AreAlike>
+AssociationGraph graphOf(const DescriptorSet& topics, const std::vector<const Descriptor*>& all,
+                         bool own_pairs, AreAlike areAlike) {
+  AssociationGraph graph;
+  for (const std::vector<Descriptor>& robot : topics.robots)
+    graph.num_topics.push_back(static_cast<int>(robot.size()));
+  const std::vector<int> owner = owners(graph);
+  for (size_t i = 0; i < all.size(); ++i) {
+    if (all[i]->entries.empty()) continue;
+    for (size_t j = i + 1; j < all.size(); ++j) {
+      if (all[j]->entries.empty() || (!own_pairs && owner[i] == owner[j])) continue;
+      if (areAlike(i, j)) graph.edges.push_back({static_cast<int>(i), static_cast<int>(j)});
+    }
+  }
+  return graph;
+}
+
 }  // namespace
 
 void check(const AssociationGraph& graph) {
@@ -51,23 +75,17 @@ std::vector<int> owners(const AssociationGraph& graph) {
 
 AssociationGraph associationGraph(const DescriptorSet& topics, Similarity similarity, double sigma,
                                   bool own_pairs) {
-  AssociationGraph graph;
-  std::vector<const Descriptor*> all;
-  for (const std::vector<Descriptor>& robot : topics.robots) {
-    graph.num_topics.push_back(static_cast<int>(robot.size()));
-    for (const Descriptor& topic : robot) all.push_back(&topic);
-  }
-  const std::vector<int> owner = owners(graph);
-  for (size_t i = 0; i < all.size(); ++i) {
-    if (all[i]->entries.empty()) continue;
-    for (size_t j = i + 1; j < all.size(); ++j) {
-      if (all[j]->entries.empty() || (!own_pairs && owner[i] == owner[j])) continue;
-      if (reaches(similarity(*all[i], *all[j]), sigma)) {
-        graph.edges.push_back({static_cast<int>(i), static_cast<int>(j)});
-      }
-    }
-  }
-  return graph;
+  const std::vector<const Descriptor*> all = inOneRow(topics);
+  return graphOf(topics, all, own_pairs,
+                 [&](size_t i, size_t j) { return reaches(similarity(*all[i], *all[j]), sigma); });
+}
+
+AssociationGraph associationGraph(const DescriptorSet& topics, const PairTable& similarity, double sigma,
+                                  bool own_pairs) {
+  const int64_t least = std::llround(sigma * 1e9);
+  return graphOf(topics, inOneRow(topics), own_pairs, [&](size_t i, size_t j) {
+    return similarity.at(static_cast<int>(i), static_cast<int>(j)) >= least;
+  });
 }
 
 }  // namespace shoal::matching

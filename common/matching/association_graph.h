@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "shoal/matching/descriptors.h"
+#include "shoal/matching/discounted_similarity.h"
 #include "shoal/matching/similarity.h"
 
 namespace shoal::matching {
@@ -40,6 +41,10 @@ std::vector<int> owners(const AssociationGraph& graph);
 ///
 /// Cost: O(n² V) for n topics of V words.
 AssociationGraph associationGraph(const DescriptorSet& topics, Similarity similarity, double sigma,
+                                  bool own_pairs = false);
+
+/// The same with similarities already known, by vertex.
+AssociationGraph associationGraph(const DescriptorSet& topics, const PairTable& similarity, double sigma,
                                   bool own_pairs = false);
 
 }  // namespace shoal::matching

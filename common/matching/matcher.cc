@@ -2,15 +2,20 @@
 #include "shoal/matching/matcher.h"
 
 #include <algorithm>
+#include <charconv>
 #include <stdexcept>
 #include <utility>
 
 #include "shoal/matching/clear.h"
+#include "shoal/matching/discounted_similarity.h"
 #include "shoal/matching/hungarian.h"
 #include "shoal/matching/id_matching.h"
+#include "shoal/matching/shoal_matching.h"
 
 namespace shoal::matching {
 namespace {
+
+constexpr const char* kDiscounted = "discounted";
 
 Clustering clear(const AssociationGraph& graph, bool distinct) {
   ClearOptions options;
@@ -42,36 +47,72 @@ void check(const MatcherOptions& options) {
   if (std::find(names.begin(), names.end(), options.matcher) == names.end()) {
     std::string built;
     for (const std::string& name : names) built += (built.empty() ? "" : ", ") + name;
-    const bool planned = options.matcher == "shoal" || options.matcher == "incremental";
+    const bool planned = options.matcher == "incremental";
     throw std::invalid_argument("matcher \"" + options.matcher +
                                 (planned ? "\" is not built yet" : "\" is unknown") +
                                 "; built are: " + built);
   }
-  similarityNamed(options.similarity);
-  if (!(options.sigma >= 1e-9 && options.sigma <= 1.0)) {
-    throw std::invalid_argument("sigma must lie in [1e-9, 1], got " + std::to_string(options.sigma));
-  }
-  if (!options.distinct && options.matcher != "clear") {
+  const bool discounts = options.similarity == kDiscounted;
+  if (!discounts) similarityNamed(options.similarity);
+  if (discounts && !usesSigma(options.matcher)) {
     throw std::invalid_argument("matcher \"" + options.matcher +
-                                "\" keeps the labels of one robot apart; merging them is built for: clear");
+                                "\" compares topics two by two; \"discounted\" is for: clear, shoal");
+  }
+  if (!discounts && options.matcher == "shoal") {
+    throw std::invalid_argument("matcher \"shoal\" compares by \"discounted\", got similarity \"" +
+                                options.similarity + "\"");
+  }
+  const double sigma = options.leastSimilarity();
+  if (!(sigma >= 1e-9 && sigma <= 1.0)) {
+    throw std::invalid_argument("sigma must lie in [1e-9, 1], got " + std::to_string(sigma));
+  }
+  if (!options.keepsOwnApart() && !usesSigma(options.matcher)) {
+    throw std::invalid_argument(
+        "matcher \"" + options.matcher +
+        "\" keeps the labels of one robot apart; merging them is built for: clear, shoal");
   }
 }
 
+double MatcherOptions::leastSimilarity() const { return sigma.value_or(usualSigma(matcher)); }
+
 const std::vector<std::string>& matcherNames() {
-  static const std::vector<std::string> names{"id", "hungarian", "clear"};
+  static const std::vector<std::string> names{"id", "hungarian", "clear", "shoal"};
   return names;
 }
 
-std::string usualSimilarity(std::string_view matcher) { return matcher == "hungarian" ? "l2" : "cosine"; }
+bool usesSigma(std::string_view matcher) { return matcher == "clear" || matcher == "shoal"; }
+
+std::string usualSimilarity(std::string_view matcher) {
+  if (matcher == "hungarian") return "l2";
+  return matcher == "shoal" ? kDiscounted : "cosine";
+}
+
+double usualSigma(std::string_view matcher) { return matcher == "shoal" ? kShoalSigma : 0.75; }
+
+std::optional<double> parseSigma(const std::string& text) {
+  if (text == "auto") return std::nullopt;
+  double sigma = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), sigma);
+  if (error != std::errc{} || end != text.data() + text.size() || !(sigma >= 1e-9) || sigma > 1) {
+    throw std::invalid_argument("sigma must be auto or a number in (0, 1], got \"" + text + "\"");
+  }
+  return sigma;
+}
 
 Clustering match(const DescriptorSet& topics, const MatcherOptions& options) {
   check(options);
   check(topics);
   if (options.matcher == "id") return matchById(topics);
-  const Similarity similarity = similarityNamed(options.similarity);
   return withoutEmptyTopics(topics, [&](const DescriptorSet& worded) {
+    const bool distinct = options.keepsOwnApart();
+    const double sigma = options.leastSimilarity();
+    if (options.matcher == "shoal") return matchShoal(worded, sigma, distinct);
+    if (options.similarity == kDiscounted) {
+      return clear(associationGraph(worded, discountedSimilarity(worded), sigma, !distinct), distinct);
+    }
+    const Similarity similarity = similarityNamed(options.similarity);
     if (options.matcher == "hungarian") return matchSequentially(worded, similarity);
-    return clear(associationGraph(worded, similarity, options.sigma, !options.distinct), options.distinct);
+    return clear(associationGraph(worded, similarity, sigma, !distinct), distinct);
   });
 }
 
@@ -81,7 +122,7 @@ Clustering match(const AssociationGraph& graph, const MatcherOptions& options) {
     throw std::invalid_argument("matcher \"" + options.matcher +
                                 "\" looks at the topics themselves and cannot match a graph; \"clear\" can");
   }
-  return clear(graph, options.distinct);
+  return clear(graph, options.keepsOwnApart());
 }
 
 }  // namespace shoal::matching

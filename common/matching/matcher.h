@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,24 +16,38 @@ namespace shoal::matching {
 /// What decides a match. All of it changes the answer.
 struct MatcherOptions {
   std::string matcher = "clear";      ///< one of matcherNames()
-  std::string similarity = "cosine";  ///< one of similarityNames()
-  double sigma = 0.75;                ///< "clear": pairs at least this similar are edges; in [1e-9, 1]
-  bool distinct = true;               ///< labels of one robot stay apart; false is for "clear" alone
+  std::string similarity = "cosine";  ///< one of similarityNames(), or "discounted" with "clear" and "shoal"
+  std::optional<double> sigma = {};   ///< least similarity of a match, in [1e-9, 1]; none: usualSigma()
+  std::optional<bool> distinct = {};  ///< labels of one robot stay apart; none: all but "shoal" keep them so
+
+  double leastSimilarity() const;
+  bool keepsOwnApart() const { return distinct.value_or(matcher != "shoal"); }
 };
 
 /// @throws std::invalid_argument naming the option that is wrong or not built, and what would be right.
 void check(const MatcherOptions& options);
 
-/// Matchers that are built: "id", "hungarian", "clear".
+/// Matchers that are built: "id", "hungarian", "clear", "shoal".
 const std::vector<std::string>& matcherNames();
 
-/// The similarity that goes with a matcher in the paper's figures: "l2" with "hungarian", else "cosine".
+/// Whether a matcher decides by sigma: "clear" and "shoal" do.
+bool usesSigma(std::string_view matcher);
+
+/// The similarity that goes with a matcher: "l2" with "hungarian" and "cosine" else, as in the paper's
+/// figures; "discounted" (discounted_similarity.h) with "shoal".
 std::string usualSimilarity(std::string_view matcher);
+
+/// What "auto" stands for: .25 with "shoal" (measured, docs/matching.md), the paper's .75 else.
+double usualSigma(std::string_view matcher);
+
+/// Reads "auto" (none) or a number in (0, 1].
+/// @throws std::invalid_argument naming another text, and what would be right.
+std::optional<double> parseSigma(const std::string& text);
 
 /// Joins topics of several robots under common labels.
 ///
 /// Pure: equal input, equal output. The caller orders robots and topics canonically. Topics without words are
-/// joined with nothing by "hungarian" and "clear" and change nothing for the others.
+/// joined with nothing by all but "id" and change nothing for the others.
 /// @throws std::invalid_argument naming the option or the descriptor that is wrong, and what would be right.
 Clustering match(const DescriptorSet& topics, const MatcherOptions& options);
 

@@ -83,6 +83,20 @@ TEST(RunMatchTest, MatchesByIdWhereThereAreIdsAndByPlaceWhereThereAreNone) {
       (Labels{0, 1, 0}));
 }
 
+TEST(RunMatchTest, JoinsARobotsOwnLabelsWithShoalUnlessTheyAreToStayDistinct) {
+  const std::string text = R"({"vocabulary":3,"matcher":"shoal","sigma":"auto","robots":[{"topics":[)"
+                           R"({"words":{"0":90,"1":10}},{"words":{"0":90,"1":11}},{"words":{"2":100}}]},)"
+                           R"({"topics":[{"words":{"0":91,"1":9}}]}]})";
+  const Outcome joined = run(text);
+  EXPECT_EQ(joined.json()["labels"].get<Labels>(), (Labels{0, 0, 1, 0})) << joined.err;
+  EXPECT_EQ(joined.json()["sigma"], .25);
+  EXPECT_EQ(joined.json()["universe"], 2);
+  MatchFileOptions flags;
+  flags.distinct = true;
+  const Labels labels = run(text, flags).json()["labels"].get<Labels>();
+  EXPECT_NE(labels[0], labels[1]);
+}
+
 TEST(RunMatchTest, TimesTheMatchingWhenAsked) {
   MatchFileOptions flags;
   flags.timing = true;
@@ -184,11 +198,11 @@ TEST(RunMatchTest, RejectsBadContentInOneLine) {
       {R"({"vocabulary":5,"robots":[],"groups":[{"name":"a","first":0,"size":6}]})", "groups[0].size"},
       {R"({"vocabulary":5,"robots":[],"groups":[{"first":0,"size":5}]})", "groups[0]"},
       {R"({"vocabulary":5,"robots":[],"groups":3})", "groups"},
-      {R"({"vocabulary":5,"robots":[],"sigma":"auto"})", "not built yet"},
+      {R"({"vocabulary":5,"robots":[],"sigma":"much"})", "sigma"},
       {R"({"vocabulary":5,"robots":[],"sigma":1.5})", "sigma"},
       {R"({"vocabulary":5,"robots":[],"sigma":[]})", "sigma"},
       {R"({"vocabulary":5,"robots":[],"similarity":"hellinger"})", "hellinger"},
-      {R"({"vocabulary":5,"robots":[],"matcher":"shoal"})", "not built yet"},
+      {R"({"vocabulary":5,"robots":[],"matcher":"incremental"})", "not built yet"},
   };
   for (const Bad& bad : cases) {
     const Outcome outcome = run(bad.text);
@@ -201,13 +215,12 @@ TEST(RunMatchTest, RejectsBadContentInOneLine) {
 }
 
 TEST(RunMatchTest, RejectsBadOptionsBeforeItReads) {
-  MatchFileOptions shoal, similarity, sigma, automatic, word;
-  shoal.matcher = "shoal";
+  MatchFileOptions matcher, similarity, sigma, word;
+  matcher.matcher = "incremental";
   similarity.similarity = "hellinger";
   sigma.sigma = "1.5";
-  automatic.sigma = "auto";
   word.sigma = "0.75x";
-  for (const MatchFileOptions& flags : {shoal, similarity, sigma, automatic, word}) {
+  for (const MatchFileOptions& flags : {matcher, similarity, sigma, word}) {
     const Outcome outcome = run(kRobots, flags);
     EXPECT_EQ(outcome.code, 2) << outcome.err;
     EXPECT_EQ(outcome.out, "");

@@ -73,7 +73,8 @@ TEST_P(MatcherLaws, GivesEveryTopicOneLabelAndEqualInputEqualOutput) {
     for (size_t v = 0; v < mission.truth.size(); ++v) {
       ASSERT_LE(clustering.label[v], next);
       if (clustering.label[v] == next) ++next;
-      EXPECT_TRUE(used_by_robot.emplace(mission.owner[v], clustering.label[v]).second) << "vertex " << v;
+      const bool is_new = used_by_robot.emplace(mission.owner[v], clustering.label[v]).second;
+      EXPECT_TRUE(is_new || !optionsFor(GetParam()).keepsOwnApart()) << "vertex " << v;
     }
     EXPECT_EQ(clustering.num_labels, next);
     EXPECT_GE(clustering.universe, clustering.num_labels);
@@ -102,7 +103,7 @@ TEST_P(MatcherLaws, RejectsDescriptorsThatAreNone) {
 
 // Only the words decide: topics without any join nothing and change nothing for the others.
 TEST(MatchTest, KeepsTopicsWithoutWordsOutOfIt) {
-  for (const std::string matcher : {"hungarian", "clear"}) {
+  for (const std::string matcher : {"hungarian", "clear", "shoal"}) {
     const Mission mission = makeMission(4, 9, 0);
     DescriptorSet with_empty = mission.topics;
     for (std::vector<Descriptor>& robot : with_empty.robots) robot.insert(robot.begin(), {99, {}});
@@ -122,10 +123,11 @@ TEST(MatchTest, KeepsTopicsWithoutWordsOutOfIt) {
   }
 }
 
-TEST(MatchTest, ClearFindsTheClassesBehindCleanTopics) {
-  for (uint64_t seed = 0; seed < 10; ++seed) {
-    const Mission mission = makeMission(8, seed, 5);
-    const Clustering clustering = match(mission.topics, optionsFor("clear"));
+TEST(MatchTest, ClearAndShoalFindTheClassesBehindCleanTopics) {
+  for (uint64_t seed = 0; seed < 20; ++seed) {
+    SCOPED_TRACE(seed);
+    const Mission mission = makeMission(8, seed / 2, 5);
+    const Clustering clustering = match(mission.topics, optionsFor(seed % 2 == 0 ? "clear" : "shoal"));
     std::set<std::pair<int, int>> pairs;
     for (size_t v = 0; v < mission.truth.size(); ++v) pairs.emplace(clustering.label[v], mission.truth[v]);
     EXPECT_EQ(pairs.size(), 6u);
@@ -173,6 +175,23 @@ TEST(MatchTest, MergesARobotsDuplicatesOnlyWhenAsked) {
   EXPECT_EQ(match(DescriptorSet{2, {}, {{sand, fine_sand}}}, options).num_labels, 1);  // one robot by itself
 }
 
+TEST(MatchTest, ClearTakesTheDiscountedSimilarityToo) {
+  const Mission mission = makeMission(8, 3, 5);
+  MatcherOptions options = optionsFor("clear");
+  options.similarity = "discounted";
+  options.sigma = .4;
+  EXPECT_EQ(match(mission.topics, options).num_labels, 6);
+}
+
+TEST(ParseSigmaTest, ReadsAutoAndNumbers) {
+  EXPECT_EQ(parseSigma("auto"), std::nullopt);
+  EXPECT_EQ(parseSigma("0.75"), .75);
+  for (const std::string text : {"", "0", "-1", "1.01", "0.75x", "Auto", "nan"})
+    EXPECT_THROW(parseSigma(text), std::invalid_argument) << text;
+  EXPECT_EQ(optionsFor("shoal").leastSimilarity(), .25);
+  EXPECT_EQ(optionsFor("clear").leastSimilarity(), .75);
+}
+
 TEST(MatchTest, MatchesAGraphThatIsGiven) {
   EXPECT_EQ(match(AssociationGraph{{2, 2}, {{0, 3}, {1, 2}}}, {}).label, (std::vector{0, 1, 1, 0}));
 }
@@ -191,15 +210,19 @@ void expectRefused(const MatcherOptions& options, const std::vector<std::string>
 
 TEST(MatchTest, RefusesByNameWhatIsNotBuilt) {
   MatcherOptions options;
-  for (const std::string name : {"shoal", "incremental"}) {
-    options.matcher = name;
-    expectRefused(options, {"\"" + name + "\"", "not built yet", "id", "hungarian", "clear"});
-  }
+  options.matcher = "incremental";
+  expectRefused(options, {"\"incremental\"", "not built yet", "id", "hungarian", "clear", "shoal"});
   options.matcher = "clera";
   expectRefused(options, {"\"clera\"", "unknown", "clear"});
   options = {};
   options.similarity = "hellinger";
   expectRefused(options, {"\"hellinger\"", "cosine"});
+  options = optionsFor("hungarian");
+  options.similarity = "discounted";
+  expectRefused(options, {"\"hungarian\"", "\"discounted\"", "clear, shoal"});
+  options = optionsFor("shoal");
+  options.similarity = "cosine";
+  expectRefused(options, {"\"shoal\"", "\"discounted\"", "\"cosine\""});
   options = optionsFor("id");
   options.distinct = false;
   expectRefused(options, {"\"id\"", "clear"});
@@ -208,7 +231,7 @@ TEST(MatchTest, RefusesByNameWhatIsNotBuilt) {
     options.sigma = sigma;
     expectRefused(options, {"sigma"});
   }
-  for (const std::string name : {"id", "hungarian"}) {
+  for (const std::string name : {"id", "hungarian", "shoal"}) {
     EXPECT_THROW(match(AssociationGraph{{1, 1}, {{0, 1}}}, optionsFor(name)), std::invalid_argument);
   }
 }

@@ -146,7 +146,7 @@ TEST(WorkedCasesTest, WithDescriptorsHaveTheirEdgesAndTheirAnswer) {
     options.similarity = example["metric"].get<std::string>();
     options.sigma = example["sigma"].get<double>();
     const AssociationGraph graph =
-        associationGraph(topics, similarityNamed(options.similarity), options.sigma);
+        associationGraph(topics, similarityNamed(options.similarity), options.leastSimilarity());
     std::set<std::pair<int, int>> expected;
     for (const json& e : example["edges"]) expected.emplace(e[0].get<int>(), e[1].get<int>());
     std::set<std::pair<int, int>> found;

@@ -91,9 +91,8 @@ TEST(LaunchTest, RefusesByNameWhatIsNotBuiltYet) {
     expectRefusal(fly + "--link " + link, "--link " + link);
   }
   expectRefusal(fly + "--kill-plan plan.toml", "--kill-plan is not built yet");
-  expectRefusal(fly + "--matcher shoal", "--matcher shoal is not built yet");
+  expectRefusal(fly + "--matcher incremental", "not built yet");
   expectRefusal(fly + "--profile best", "--profile best is not built yet");
-  expectRefusal(fly + "--sigma auto", "not built yet");
 }
 
 TEST(LaunchTest, KeepsAFinishedMission) {

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "shoal/matching/discounted_similarity.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "shoal/random.h"
+
+namespace shoal::matching {
+namespace {
+
+Descriptor descriptor(const std::vector<int64_t>& weights) {
+  Descriptor d;
+  for (size_t w = 0; w < weights.size(); ++w)
+    if (weights[w] > 0) d.entries.push_back({static_cast<int32_t>(w), weights[w]});
+  return d;
+}
+
+// The definition in doubles, words of the groups [0, split) and [split, end).
+double expected(const std::vector<std::vector<int64_t>>& topics, size_t split, size_t i, size_t j) {
+  const size_t words = topics[0].size();
+  const auto groupOf = [&](size_t w) { return w < split ? 0 : 1; };
+  const double size[2] = {static_cast<double>(split), static_cast<double>(words - split)};
+  std::vector<std::vector<double>> total(topics.size(), std::vector<double>(2));
+  for (size_t t = 0; t < topics.size(); ++t)
+    for (size_t w = 0; w < words; ++w) total[t][groupOf(w)] += static_cast<double>(topics[t][w]);
+  const auto contrast = [&](size_t t, size_t w) {
+    const int g = groupOf(w);
+    double background = .25 / size[g], votes = .25;
+    for (size_t u = 0; u < topics.size(); ++u) {
+      if (total[u][g] == 0) continue;
+      background += static_cast<double>(topics[u][w]) / total[u][g];
+      ++votes;
+    }
+    background /= votes;
+    const double phi = (static_cast<double>(topics[t][w]) + 100 * background) / (total[t][g] + 100);
+    return std::sqrt(phi) - std::sqrt(background);
+  };
+  double ab = 0, aa = 0, bb = 0;
+  for (size_t w = 0; w < words; ++w) {
+    const double a = contrast(i, w), b = contrast(j, w);
+    ab += a * b, aa += a * a, bb += b * b;
+  }
+  return aa * bb > 0 ? ab / std::sqrt(aa * bb) : 0;
+}
+
+TEST(DiscountedSimilarityTest, IsWhatItsDefinitionSays) {
+  for (uint64_t seed = 0; seed < 30; ++seed) {
+    SCOPED_TRACE(seed);
+    Random random(seed);
+    std::vector<std::vector<int64_t>> topics(5, std::vector<int64_t>(9));
+    DescriptorSet set{9, {0, 4}, {{}, {}}};
+    for (size_t t = 0; t < topics.size(); ++t) {
+      for (size_t w = t == 3 ? 4 : 0; w < 9; ++w) topics[t][w] = static_cast<int64_t>(random.below(400));
+      set.robots[t / 3].push_back(descriptor(topics[t]));
+    }
+    const PairTable table = discountedSimilarity(set);
+    for (size_t i = 0; i < topics.size(); ++i)
+      for (size_t j = 0; j < i; ++j)
+        EXPECT_NEAR(table.at(static_cast<int>(i), static_cast<int>(j)) / 1e9, expected(topics, 4, i, j),
+                    2e-5);
+  }
+}
+
+TEST(DiscountedSimilarityTest, TakesTheBackgroundFromWhatTopicsShare) {
+  // Three topics that are mostly sand, with a tenth of something of their own; the last two share it.
+  const DescriptorSet set{
+      4,
+      {},
+      {{descriptor({900, 100, 0, 0})}, {descriptor({900, 0, 100, 0})}, {descriptor({900, 0, 100, 1})}}};
+  const PairTable table = discountedSimilarity(set);
+  EXPECT_LT(table.at(0, 1), 0);
+  EXPECT_LT(table.at(0, 2), 0);
+  EXPECT_GT(table.at(1, 2), 900'000'000);
+}
+
+TEST(DiscountedSimilarityTest, TellsTwoTopicsAloneWhetherTheyAreAlike) {
+  const PairTable alike =
+      discountedSimilarity({3, {}, {{descriptor({900, 100, 0})}, {descriptor({880, 120, 0})}}});
+  EXPECT_GT(alike.at(0, 1), 900'000'000);
+  const PairTable other =
+      discountedSimilarity({3, {}, {{descriptor({900, 100, 0})}, {descriptor({0, 100, 900})}}});
+  EXPECT_LT(other.at(0, 1), 100'000'000);
+}
+
+TEST(DiscountedSimilarityTest, CallsATopicWithoutWordsUnlikeAll) {
+  const PairTable table =
+      discountedSimilarity({2, {}, {{descriptor({5, 1}), descriptor({})}, {descriptor({})}}});
+  EXPECT_EQ(table.at(0, 1), 0);
+  EXPECT_EQ(table.at(1, 2), 0);
+}
+
+TEST(DiscountedSimilarityTest, TrustsFewWordsLess) {
+  // Topic 2 and topic 3 hold the same shares, but topic 3 says so with four words only: its group is mostly
+  // background.
+  const DescriptorSet set{4,
+                          {0, 2},
+                          {{descriptor({500, 0, 500, 0})},
+                           {descriptor({0, 500, 0, 500})},
+                           {descriptor({0, 500, 500, 0})},
+                           {descriptor({0, 4, 500, 0})}}};
+  const PairTable table = discountedSimilarity(set);
+  EXPECT_GT(table.at(0, 3), table.at(0, 2));
+}
+
+}  // namespace
+}  // namespace shoal::matching
