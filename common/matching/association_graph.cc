@@ -46,9 +46,10 @@ void check(const AssociationGraph& graph) {
     }
   }
   const int n = graph.numVertices();
-  std::vector<std::pair<int, int>> pairs;
-  pairs.reserve(graph.edges.size());
-  for (const Edge& e : graph.edges) {
+  const auto ends = [](const Edge& e) { return std::pair{e.i, e.j}; };
+  bool ascends = true;
+  for (size_t k = 0; k < graph.edges.size(); ++k) {
+    const Edge& e = graph.edges[k];
     if (e.i < 0 || e.j >= n || e.i >= e.j) {
       throw std::invalid_argument(text(e) + " is not 0 <= i < j < " + std::to_string(n));
     }
@@ -56,8 +57,11 @@ void check(const AssociationGraph& graph) {
       throw std::invalid_argument(text(e) + " has weight " + std::to_string(e.weight) +
                                   ", a finite number >= 0 would be right");
     }
-    pairs.emplace_back(e.i, e.j);
+    ascends = ascends && (k == 0 || ends(graph.edges[k - 1]) < ends(e));
   }
+  if (ascends) return;  // as our own graphs do: no edge is there twice
+  std::vector<std::pair<int, int>> pairs;
+  for (const Edge& e : graph.edges) pairs.push_back(ends(e));
   std::sort(pairs.begin(), pairs.end());
   const auto twice = std::adjacent_find(pairs.begin(), pairs.end());
   if (twice != pairs.end()) {

@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <set>
 #include <stdexcept>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "shoal/matching/assignment.h"
@@ -142,6 +144,24 @@ std::vector<int> assignDistinct(const Place* topics, int num_topics, int num_col
   return chosen;
 }
 
+// Brings the entries of each column into ascending order of their rows.
+void sortColumns(Eigen::SparseMatrix<double>& matrix) {
+  std::vector<std::pair<int, double>> column;
+  for (Eigen::Index j = 0; j < matrix.cols(); ++j) {
+    const int first = matrix.outerIndexPtr()[j];
+    const int last = matrix.outerIndexPtr()[j + 1];
+    int* const row = matrix.innerIndexPtr();
+    double* const value = matrix.valuePtr();
+    if (std::is_sorted(row + first, row + last)) continue;
+    column.clear();
+    for (int k = first; k < last; ++k) column.emplace_back(row[k], value[k]);
+    std::sort(column.begin(), column.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (int k = first; k < last; ++k) {
+      std::tie(row[k], value[k]) = column[static_cast<size_t>(k - first)];
+    }
+  }
+}
+
 void checkOptions(const ClearOptions& options) {
   if (!(options.eigenvalue_threshold > 0.0 && options.eigenvalue_threshold < 1.0)) {
     throw std::invalid_argument("eigenvalue_threshold must lie in (0, 1), got " +
@@ -160,16 +180,34 @@ Eigen::SparseMatrix<double> normalizedLaplacian(const AssociationGraph& graph, b
   const std::vector<int> owner = owners(graph);
   const auto n = static_cast<Eigen::Index>(owner.size());
 
-  std::vector<Eigen::Triplet<double>> entries;
+  const auto counts = [&](const Edge& e) {
+    return e.weight != 0.0 &&
+           !(distinct && owner[static_cast<size_t>(e.i)] == owner[static_cast<size_t>(e.j)]);
+  };
+  Eigen::VectorXi entries = Eigen::VectorXi::Ones(n);  // per column; the diagonal is one
   for (const Edge& e : graph.edges) {
-    if (e.weight == 0.0) continue;
-    if (distinct && owner[static_cast<size_t>(e.i)] == owner[static_cast<size_t>(e.j)]) continue;
-    entries.emplace_back(e.i, e.j, e.weight);
-    entries.emplace_back(e.j, e.i, e.weight);
+    if (!counts(e)) continue;
+    ++entries[e.i];
+    ++entries[e.j];
   }
-  for (int v = 0; v < n; ++v) entries.emplace_back(v, v, 0.0);
   Eigen::SparseMatrix<double> matrix(n, n);
-  matrix.setFromTriplets(entries.begin(), entries.end());
+  matrix.resizeNonZeros(entries.sum());
+  std::partial_sum(entries.begin(), entries.end(), matrix.outerIndexPtr() + 1);
+  std::vector<int> next(matrix.outerIndexPtr(), matrix.outerIndexPtr() + n);
+  const auto put = [&](int row, int column, double value) {
+    const int at = next[static_cast<size_t>(column)]++;
+    matrix.innerIndexPtr()[at] = row;
+    matrix.valuePtr()[at] = value;
+  };
+  // In this order columns ascend when the edges do.
+  for (const Edge& e : graph.edges) {
+    if (counts(e)) put(e.i, e.j, e.weight);
+  }
+  for (int v = 0; v < n; ++v) put(v, v, 0.0);
+  for (const Edge& e : graph.edges) {
+    if (counts(e)) put(e.j, e.i, e.weight);
+  }
+  sortColumns(matrix);
 
   // Summed along the sorted columns: the order of the edges changes no bit.
   const Eigen::VectorXd degree = matrix * Eigen::VectorXd::Ones(n);

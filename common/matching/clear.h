@@ -51,7 +51,7 @@ Eigen::SparseMatrix<double> normalizedLaplacian(const AssociationGraph& graph, b
 /// @returns A clustering of the graph's vertices. Empty for a graph without any.
 /// @throws std::invalid_argument naming the offending edge or option.
 ///
-/// Cost: O(nnz + n·m) per step of the eigensolver for components above 200 vertices,
+/// Cost: O(nnz + n·m) per step of the eigensolver for components above 300 vertices,
 /// O(s³) for a smaller one of s vertices; memory O(nnz + n·m). Never n×n.
 ///
 /// Source: K. Fathian et al., "CLEAR: A Consistent Lifting, Embedding, and

@@ -19,15 +19,18 @@ constexpr double kEqual = 1e-9;  // eigenvalues closer than this are one eigenva
 Sparse complement(const Sparse& laplacian, const std::vector<int>& vertices, std::vector<int>& position) {
   const int size = static_cast<int>(vertices.size());
   for (int k = 0; k < size; ++k) position[static_cast<size_t>(vertices[static_cast<size_t>(k)])] = k;
-  std::vector<Eigen::Triplet<double>> entries;
+  Eigen::Index count = 0;
+  for (const int v : vertices) count += laplacian.col(v).nonZeros();
+  Sparse block(size, size);
+  block.reserve(count);
   for (int k = 0; k < size; ++k) {
+    block.startVec(k);
     for (Sparse::InnerIterator it(laplacian, vertices[static_cast<size_t>(k)]); it; ++it) {
-      const int row = position[static_cast<size_t>(it.row())];
-      entries.emplace_back(row, k, (row == k ? 1.0 : 0.0) - it.value());
+      const int row = position[static_cast<size_t>(it.row())];  // positions ascend as vertices do
+      block.insertBack(row, k) = (row == k ? 1.0 : 0.0) - it.value();
     }
   }
-  Sparse block(size, size);
-  block.setFromTriplets(entries.begin(), entries.end());
+  block.finalize();
   return block;
 }
 

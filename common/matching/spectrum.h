@@ -33,8 +33,8 @@ struct SmallEnd {
 /// @param bound      > 0. The eigenvalue 0 of each component counts as below whatever round-off says.
 /// @param at_least   <= n.
 ///
-/// Cost: O(s³) for a component of s <= 200 vertices, a few hundred products with the Laplacian above; cliques
-/// of unit weight and single vertices by closed form. Memory O(nnz + Σ s·c). Never n×n.
+/// Cost: O(s³) for a component of s <= 300 vertices, two to four products with the Laplacian a pair above;
+/// cliques of unit weight and single vertices by closed form. Memory O(nnz + Σ s·c). Never n×n.
 SmallEnd smallEnd(const Eigen::SparseMatrix<double>& laplacian, double bound, int at_least);
 
 /// The vertex sets of the connected components of a symmetric matrix, by lowest vertex, each ascending. Every

@@ -6,35 +6,13 @@
 #include <utility>
 #include <vector>
 
+#include "graph_matrices.h"
 #include "noisy_graph.h"
-#include "shoal/matching/clear.h"
 
 namespace shoal::matching {
 namespace {
 
 using Sparse = Eigen::SparseMatrix<double>;
-
-// I - L of a graph in which every vertex is a robot of its own.
-Sparse complement(int num_vertices, const std::vector<Edge>& edges) {
-  const AssociationGraph graph{std::vector<int>(static_cast<size_t>(num_vertices), 1), edges};
-  Sparse matrix = -normalizedLaplacian(graph);
-  for (int v = 0; v < num_vertices; ++v) matrix.coeffRef(v, v) += 1.0;
-  return matrix;
-}
-
-Sparse complement(const AssociationGraph& graph) {
-  Sparse matrix = -normalizedLaplacian(graph);
-  for (Eigen::Index v = 0; v < matrix.rows(); ++v) matrix.coeffRef(v, v) += 1.0;
-  return matrix;
-}
-
-std::vector<Edge> clique(int first, int size) {
-  std::vector<Edge> edges;
-  for (int i = first; i < first + size; ++i) {
-    for (int j = i + 1; j < first + size; ++j) edges.push_back({i, j});
-  }
-  return edges;
-}
 
 // The same values and the same projector: all that CLEAR looks at.
 void expectSame(const Eigenpairs& a, const Eigenpairs& b) {
@@ -71,13 +49,7 @@ TEST(KrylovEigenpairsTest, DecideWhereTheFirstLookSeesNothing) {
 // Twelve equal cliques on one hub: an eigenvalue above .5 occurs eleven times, and a Krylov space sees it
 // once.
 TEST(KrylovEigenpairsTest, FindEveryCopyOfAMultipleEigenvalue) {
-  std::vector<Edge> edges;
-  for (int c = 0; c < 12; ++c) {
-    const int first = 1 + 6 * c;
-    for (const Edge& e : clique(first, 6)) edges.push_back(e);
-    edges.push_back({0, first});
-  }
-  const Sparse matrix = complement(73, edges);
+  const Sparse matrix = complement(73, twelveCliquesOnAHub());
   const Eigenpairs dense = denseEigenpairsAbove(matrix, .5 + 1e-6);
   ASSERT_EQ(dense.values.size(), 12);
   ASSERT_NEAR(dense.values[1], dense.values[11], 1e-12);
@@ -88,9 +60,7 @@ TEST(KrylovEigenpairsTest, FindEveryCopyOfAMultipleEigenvalue) {
 
 // A star has its eigenvalue .5 on the bound, k - 1 times: none of them is above.
 TEST(KrylovEigenpairsTest, LeaveOutTiesOnTheBound) {
-  std::vector<Edge> edges;
-  for (int leaf = 1; leaf < 300; ++leaf) edges.push_back({0, leaf});
-  const auto krylov = krylovEigenpairsAbove(complement(300, edges), .5 + 1e-6);
+  const auto krylov = krylovEigenpairsAbove(complement(300, star(300)), .5 + 1e-6);
   ASSERT_TRUE(krylov.has_value());
   ASSERT_EQ(krylov->values.size(), 1);
   EXPECT_NEAR(krylov->values[0], 1.0, 1e-12);

@@ -39,22 +39,25 @@ inline NoisyGraph makeNoisyGraph(int num_robots, int num_topics, double missing,
     noisy.graph.num_topics.push_back(num_topics);
   }
   const int n = num_robots * num_topics;
-  std::set<std::pair<int, int>> edges;
+  std::vector<std::pair<int, int>> edges;
   int num_true = 0;
   for (int j = 0; j < n; ++j) {
     for (int i = 0; i < j; ++i) {
       if (noisy.truth[static_cast<size_t>(i)] != noisy.truth[static_cast<size_t>(j)]) continue;
       ++num_true;
-      if (random.uniform() >= missing) edges.emplace(i, j);
+      if (random.uniform() >= missing) edges.emplace_back(i, j);
     }
   }
+  std::set<std::pair<int, int>> wrong;
   for (int wanted = static_cast<int>(std::lround(false_per_true * num_true)); wanted > 0;) {
     const int a = static_cast<int>(random.below(static_cast<uint64_t>(n)));
     const int b = static_cast<int>(random.below(static_cast<uint64_t>(n)));
     if (a / num_topics == b / num_topics) continue;
     if (noisy.truth[static_cast<size_t>(a)] == noisy.truth[static_cast<size_t>(b)]) continue;
-    if (edges.emplace(std::min(a, b), std::max(a, b)).second) --wanted;
+    if (wrong.emplace(std::min(a, b), std::max(a, b)).second) --wanted;
   }
+  edges.insert(edges.end(), wrong.begin(), wrong.end());
+  std::sort(edges.begin(), edges.end());
   for (const auto& [i, j] : edges) noisy.graph.edges.push_back({i, j});
   return noisy;
 }
