@@ -82,9 +82,9 @@ std::vector<world::WordsInCells> TeamWords::inOneRow(size_t first) const {
 TeamWords lookAround(const world::Place& place, uint64_t place_seed, const world::SurveyOptions& wanted,
                      const std::string& profile, const WordCache& cache) {
   const world::SurveyOptions survey = place.completed(wanted);
-  const auto extractor = vision::makeWordExtractor(profile);
+  const uint64_t words = vision::makeWordExtractor(profile)->fingerprint();
   const world::Grid grid(survey.cell_size_m);
-  const uint64_t key = keyOf(place, place_seed, survey, extractor->fingerprint(), cache.made_by);
+  const uint64_t key = keyOf(place, place_seed, survey, words, cache.made_by);
   const auto fileOf = [&](const std::string& what) {
     constexpr std::string_view kDigits = "0123456789abcdef";
     std::string path = cache.folder + "/";
@@ -109,6 +109,7 @@ TeamWords lookAround(const world::Place& place, uint64_t place_seed, const world
     const bool looks = images.empty();
     if (looks || projects) {
       ProjectedTruth votes(grid);
+      const auto extractor = vision::makeWordExtractor(profile);  // it learns about this robot's camera
       const auto source = place.source(survey, robot);
       while (const auto observation = source->next()) {
         if (looks) images.push_back(extractor->extract(*observation, grid));

@@ -22,7 +22,8 @@ struct TeamWords {
   /// True class of a cell, by bisection. Refers to this object.
   TruthOfCell truthOfCell() const;
 
-  /// The same images as one robot would see them that flies all shares, from share `first` on and round.
+  /// The same images as one robot would see them that flies all shares, from share `first` on and round;
+  /// their words as the robots of the team have them, each with its own camera.
   std::vector<world::WordsInCells> inOneRow(size_t first) const;
 };
 

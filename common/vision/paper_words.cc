@@ -67,8 +67,7 @@ std::vector<PixelWord> PaperWords::words(const cv::Mat& bgr) const {
   return words;
 }
 
-world::WordsInCells PaperWords::extract(const world::Observation& observation,
-                                        const world::Grid& grid) const {
+world::WordsInCells PaperWords::extract(const world::Observation& observation, const world::Grid& grid) {
   checkObservation(observation);
   if (observation.color.cols < kMinSide || observation.color.rows < kMinSide) {
     throw std::invalid_argument("images must be at least 32x32 pixels, got " +

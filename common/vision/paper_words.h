@@ -18,7 +18,7 @@ namespace shoal::vision {
 /// points are found on the equalised L itself, not on an L that went through BGR and back. Pictures of
 /// ground seldom have corners in 8-bit a and b, so those groups may stay nearly empty.
 ///
-/// Pure: no state beyond the vocabulary, so one object may serve several threads.
+/// No state beyond the vocabulary: what an image gives does not depend on the images before it.
 class PaperWords : public WordExtractor {
  public:
   explicit PaperWords(const Vocabulary& vocabulary);
@@ -28,7 +28,7 @@ class PaperWords : public WordExtractor {
 
   /// @throws std::invalid_argument when the observation's images differ in size or type or are under 32
   ///         pixels wide or high.
-  world::WordsInCells extract(const world::Observation& observation, const world::Grid& grid) const override;
+  world::WordsInCells extract(const world::Observation& observation, const world::Grid& grid) override;
 
  private:
   std::vector<PixelWord> words(const cv::Mat& bgr) const;

@@ -6,7 +6,9 @@
 
 namespace shoal::vision {
 
-/// The bytes of vocabularies/orb_5000.voc, built into this library: no path is needed at run time.
+/// The bytes of vocabularies/orb_5000.voc (profile "paper") and vocabularies/dense.voc (profile "best"),
+/// built into this library: no path is needed at run time.
 std::span<const uint8_t> shippedOrbVocabulary();
+std::span<const uint8_t> shippedDenseVocabulary();
 
 }  // namespace shoal::vision

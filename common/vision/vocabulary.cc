@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-#include "shoal/random.h"
+#include "shoal/vision/little_endian.h"
 
 namespace shoal::vision {
 namespace {
@@ -18,19 +18,8 @@ constexpr uint64_t kMaxWords = 65536;
 constexpr size_t kHeaderBytes = 24;
 constexpr size_t kChecksumBytes = 8;
 
-void appendLittleEndian64(std::vector<uint8_t>& bytes, uint64_t value) {
-  for (int i = 0; i < 8; ++i) bytes.push_back(static_cast<uint8_t>(value >> (8 * i)));
-}
-
 // The second block of the header: version in the low half, bits a word in the high half.
 constexpr uint64_t kFormat = kFormatVersion | uint64_t{kBinaryWordBits} << 32;
-
-// Over the 8-byte blocks of header and words.
-uint64_t checksum(std::span<const uint8_t> bytes) {
-  uint64_t hash = 0;
-  for (size_t i = 0; i + 8 <= bytes.size(); i += 8) hash = hashCombine(hash, littleEndian64(&bytes[i]));
-  return hash;
-}
 
 std::vector<uint8_t> serializeWithoutChecksum(std::span<const BinaryWord> words) {
   std::vector<uint8_t> bytes;

@@ -3,6 +3,8 @@
 
 #include <stdexcept>
 
+#include "shoal/vision/dense_vocabulary.h"
+#include "shoal/vision/dense_words.h"
 #include "shoal/vision/paper_words.h"
 #include "shoal/vision/shipped_vocabulary.h"
 #include "shoal/vision/vocabulary.h"
@@ -10,14 +12,14 @@
 namespace shoal::vision {
 
 std::unique_ptr<WordExtractor> makeWordExtractor(const std::string& profile) {
-  return makeWordExtractor(profile, shippedOrbVocabulary());
+  return makeWordExtractor(profile, profile == "best" ? shippedDenseVocabulary() : shippedOrbVocabulary());
 }
 
 std::unique_ptr<WordExtractor> makeWordExtractor(const std::string& profile,
                                                  std::span<const uint8_t> vocabulary_bytes) {
   if (profile == "paper") return std::make_unique<PaperWords>(Vocabulary::parse(vocabulary_bytes));
-  if (profile == "best") throw std::invalid_argument("profile \"best\" is not built yet; use \"paper\"");
-  throw std::invalid_argument("no profile \"" + profile + "\"; use \"paper\"");
+  if (profile == "best") return std::make_unique<DenseWords>(DenseVocabulary::parse(vocabulary_bytes));
+  throw std::invalid_argument("no profile \"" + profile + "\"; use \"paper\" or \"best\"");
 }
 
 }  // namespace shoal::vision

@@ -13,7 +13,10 @@
 
 namespace shoal::vision {
 
-/// Turns an image into visual words placed in cells of the map by depth and pose.
+/// Turns the images of one robot into visual words placed in cells of the map by depth and pose.
+///
+/// It may learn about the robot's camera from image to image: one object belongs to one robot and one thread,
+/// and takes that robot's images in order.
 class WordExtractor {
  public:
   virtual ~WordExtractor() = default;
@@ -24,19 +27,20 @@ class WordExtractor {
   /// Identifies vocabulary and extraction parameters: robots may only be matched when it is equal.
   virtual uint64_t fingerprint() const = 0;
 
-  /// Words of one image. Words at pixels without valid depth are dropped and counted. Pure.
+  /// Words of the next image. Words at pixels without valid depth are dropped and counted. A pure function of
+  /// the images so far.
   /// @throws std::invalid_argument when images of the observation differ in size or type.
-  virtual world::WordsInCells extract(const world::Observation& observation,
-                                      const world::Grid& grid) const = 0;
+  virtual world::WordsInCells extract(const world::Observation& observation, const world::Grid& grid) = 0;
 
   int32_t vocabularySize() const { return groups().back().first + groups().back().size; }
 };
 
-/// The extractor of a profile ("paper") with the vocabulary that is built into this library.
-/// @throws std::invalid_argument naming a profile that is unknown or not built yet.
+/// The extractor of a profile, "paper" or "best", with the vocabulary that is built into this library.
+/// @throws std::invalid_argument naming a profile that is unknown.
 std::unique_ptr<WordExtractor> makeWordExtractor(const std::string& profile);
 
-/// The same with a vocabulary of the caller's, in the format of vocabulary.h.
+/// The same with a vocabulary of the caller's, in the format of vocabulary.h ("paper") or dense_vocabulary.h
+/// ("best").
 /// @throws std::invalid_argument naming the profile, or what is wrong with the vocabulary.
 std::unique_ptr<WordExtractor> makeWordExtractor(const std::string& profile,
                                                  std::span<const uint8_t> vocabulary_bytes);

@@ -200,9 +200,9 @@ TEST(MakeWordExtractorTest, RefusesProfilesByName) {
     }
     return "no complaint";
   };
-  EXPECT_EQ(complaint("best"), "profile \"best\" is not built yet; use \"paper\"");
-  EXPECT_EQ(complaint("foo"), "no profile \"foo\"; use \"paper\"");
-  EXPECT_EQ(complaint(""), "no profile \"\"; use \"paper\"");
+  EXPECT_EQ(complaint("foo"), "no profile \"foo\"; use \"paper\" or \"best\"");
+  EXPECT_EQ(complaint(""), "no profile \"\"; use \"paper\" or \"best\"");
+  EXPECT_EQ(complaint("best"), "no complaint");
   EXPECT_EQ(complaint("paper"), "no complaint");
 }
 

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "shoal/vision/photometric_correction.h"
+
+#include <algorithm>
+
+#include "shoal/demand.h"
+#include "shoal/vision/fixed_math.h"
+
+namespace shoal::vision {
+namespace {
+
+constexpr int kLogBits = 16;
+
+int32_t logOf(int value) { return fixedLog2(static_cast<uint64_t>(value) + 1, kLogBits); }
+
+}  // namespace
+
+void PhotometricCorrection::observe(const cv::Mat& bgr) {
+  SHOAL_DEMAND(bgr.type() == CV_8UC3 && !bgr.empty());
+  std::array<std::array<int64_t, 256>, 3> counts{};
+  for (int v = 0; v < bgr.rows; ++v) {
+    const uint8_t* pixel = bgr.ptr<uint8_t>(v);
+    for (int u = 0; u < bgr.cols; ++u, pixel += 3) {
+      for (size_t c = 0; c < 3; ++c) ++counts[c][pixel[c]];
+    }
+  }
+  for (size_t c = 0; c < 3; ++c) {
+    int64_t sum = 0;
+    for (int value = 0; value < 256; ++value) sum += counts[c][static_cast<size_t>(value)] * logOf(value);
+    sum_of_logs_[c] += sum / (int64_t{bgr.rows} * bgr.cols);
+  }
+  ++num_images_;
+}
+
+ChannelResponses PhotometricCorrection::responses() const {
+  constexpr int32_t kMost = kPhotometricSettings.max_octaves << kLogBits;
+  ChannelResponses responses;
+  for (size_t c = 0; c < 3; ++c) {
+    int32_t octaves = 0;  // of gain, in steps of 2^-16
+    if (num_images_ > 0) {
+      const auto mean = static_cast<int32_t>(sum_of_logs_[c] / num_images_);
+      octaves = std::clamp(logOf(kPhotometricSettings.level) - mean, -kMost, kMost);
+    }
+    const uint64_t gain = fixedExp2(octaves);  // in steps of 2^-16
+    for (size_t value = 0; value < 256; ++value) {
+      const uint64_t corrected = (16 * value * gain + (1 << 15)) >> 16;
+      responses[c][value] = static_cast<int16_t>(std::min<uint64_t>(corrected, kMaxCorrected));
+    }
+  }
+  return responses;
+}
+
+}  // namespace shoal::vision
