@@ -153,6 +153,31 @@ Snapshot CellLabelModel::snapshot() const {
   return snapshot;
 }
 
+std::vector<double> CellLabelModel::surprise(const world::WordsInCells& words,
+                                             Surroundings surroundings) const {
+  check(words, counts_.vocabularySize());
+  std::vector<double> bits(words.cells.size());
+  if (cells_.empty()) return bits;
+  std::vector<int64_t> scores(scores_.size());
+  std::vector<int32_t> around(cells_of_.size());
+  for (size_t i = 0; i < bits.size(); ++i) {
+    const world::CellWords& seen = words.cells[i];
+    std::ranges::fill(around, 0);
+    if (surroundings == Surroundings::kNeighborhood) {
+      for (const int32_t c : neighborhood_.around(seen.cell)) {
+        ++around[static_cast<size_t>(cells_[static_cast<size_t>(c)].slot)];
+      }
+    }
+    const bool alone = std::ranges::count(around, 0) == std::ssize(around);
+    const int64_t num_words =
+        std::accumulate(seen.words.begin(), seen.words.end(), int64_t{0},
+                        [](int64_t sum, const world::WordCount& w) { return sum + w.count; });
+    counts_.logLikelihoods(seen.words, -1, scores);
+    bits[i] = bitsPerWord(scores, alone ? cells_of_ : around, num_words);
+  }
+  return bits;
+}
+
 std::vector<TopicCounts> CellLabelModel::topics() const {
   std::vector<TopicCounts> topics(static_cast<size_t>(slots_.end()));
   for (int32_t w = 0; w < counts_.vocabularySize(); ++w) {

@@ -10,6 +10,7 @@
 #include "shoal/topics/label_counts.h"
 #include "shoal/topics/learner.h"
 #include "shoal/topics/neighborhood.h"
+#include "shoal/topics/surprise.h"
 #include "shoal/topics/topic_slots.h"
 #include "shoal/world/words_in_cells.h"
 
@@ -66,6 +67,12 @@ class CellLabelModel final : public Learner {
   ///
   /// Cost: O(V K + cells log cells).
   Snapshot snapshot() const override;
+
+  /// How surprising an image is to the model as it stands, before observe(): bitsPerWord() of each of its
+  /// cells, in order, 0 while the map is empty. Cells that adjoin nothing known are compared with the whole
+  /// map.
+  /// @throws std::invalid_argument if `words` breaks its contract.
+  std::vector<double> surprise(const world::WordsInCells& words, Surroundings surroundings) const;
 
   int32_t numCells() const override { return neighborhood_.size(); }
   int32_t numTopics() const override { return slots_.numOpen(); }
