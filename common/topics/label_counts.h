@@ -26,6 +26,7 @@ class LabelCounts {
   /// @throws std::invalid_argument for groups that do not, or a table of more than 2^31 entries.
   LabelCounts(std::vector<world::WordGroup> groups, int32_t num_labels, double beta);
 
+  const std::vector<world::WordGroup>& groups() const { return groups_; }
   int32_t vocabularySize() const { return groups_.back().first + groups_.back().size; }
 
   /// Length of every row over labels: their number rounded up to whole vector registers. The labels beyond
