@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <stdexcept>
+#include <variant>
 
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
@@ -26,12 +27,13 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// The search space that ships: what the paper's authors searched, cut to where a count budget makes sense.
+template <typename Learning>
 struct Parameter {
   eval::Knob knob;
-  double topics::Hyperparameters::*member;
+  double Learning::*member;
 };
-const std::vector<Parameter>& parameters() {
-  static const std::vector<Parameter> all = {
+const std::vector<Parameter<topics::Hyperparameters>>& parametersOf(const topics::Hyperparameters&) {
+  static const std::vector<Parameter<topics::Hyperparameters>> all = {
       {{"alpha", 1e-3, 3.0}, &topics::Hyperparameters::alpha},
       {{"beta", 1e-2, 5.0}, &topics::Hyperparameters::beta},
       {{"gamma", 1e-9, 1e-1}, &topics::Hyperparameters::gamma},
@@ -39,14 +41,32 @@ const std::vector<Parameter>& parameters() {
   };
   return all;
 }
+const std::vector<Parameter<topics::CellLabelHyperparameters>>& parametersOf(
+    const topics::CellLabelHyperparameters&) {
+  static const std::vector<Parameter<topics::CellLabelHyperparameters>> all = {
+      {{"temper", 1e-2, 1.0}, &topics::CellLabelHyperparameters::temper},
+      {{"beta", 1e-2, 10.0}, &topics::CellLabelHyperparameters::beta},
+      {{"coupling", 0.1, 5.0}, &topics::CellLabelHyperparameters::coupling},
+  };
+  return all;
+}
 
-const Parameter& parameter(const std::string& name) {
+/// The knob of that name, and where it turns.
+template <typename Learning>
+const Parameter<Learning>& parameter(const Learning& learning, const std::string& name) {
   std::string known;
-  for (const Parameter& p : parameters()) {
+  for (const Parameter<Learning>& p : parametersOf(learning)) {
     if (p.knob.name == name) return p;
     known += (known.empty() ? "" : ", ") + p.knob.name;
   }
   throw std::invalid_argument("--knobs: \"" + name + "\" is unknown; known are " + known);
+}
+
+eval::Knob knob(const topics::LearnerHyperparameters& learning, const std::string& name) {
+  return std::visit([&](const auto& h) { return parameter(h, name).knob; }, learning);
+}
+void turn(topics::LearnerHyperparameters& learning, const std::string& name, double value) {
+  std::visit([&](auto& h) { h.*parameter(h, name).member = value; }, learning);
 }
 
 void check(const TuneOptions& o) {
@@ -63,8 +83,15 @@ void check(const TuneOptions& o) {
   demand("--seeds", o.seeds, 1);
   demand("--random", o.random, 2);
   demand("--trials", o.trials, 1);
-  if (o.knobs.empty()) throw std::invalid_argument("--knobs is empty");
-  for (const std::string& name : o.knobs) parameter(name);
+}
+
+// The first two of the profile's, where none are named.
+std::vector<std::string> usualKnobs(const topics::LearnerHyperparameters& learning) {
+  return std::visit(
+      [](const auto& h) {
+        return std::vector{parametersOf(h)[0].knob.name, parametersOf(h)[1].knob.name};
+      },
+      learning);
 }
 
 double aloneScore(const eval::TeamWords& words, const eval::LearningOptions& learning) {
@@ -79,12 +106,13 @@ double aloneScore(const eval::TeamWords& words, const eval::LearningOptions& lea
 
 }  // namespace
 
-Json tune(const TuneOptions& options) {
+Json tune(TuneOptions options) {
   check(options);
-  catchStopSignals();
+  const topics::LearnerHyperparameters base = robot::hyperparametersOf(options.profile);
+  if (options.knobs.empty()) options.knobs = usualKnobs(base);
   std::vector<eval::Knob> knobs;
-  for (const std::string& name : options.knobs) knobs.push_back(parameter(name).knob);
-  const topics::Hyperparameters base = robot::hyperparametersOf(options.profile);
+  for (const std::string& name : options.knobs) knobs.push_back(knob(base, name));
+  catchStopSignals();
 
   world::SurveyOptions survey;
   survey.num_robots = options.num_robots;
@@ -126,9 +154,8 @@ Json tune(const TuneOptions& options) {
       if (stopSignal() != 0)
         throw std::runtime_error("stopped; what was tried is kept, the same command goes on from there");
       const std::vector<double> values = eval::nextSetting(knobs, tried, options.random, options.seed);
-      topics::Hyperparameters hyperparameters = base;
-      for (size_t k = 0; k < values.size(); ++k)
-        hyperparameters.*parameter(options.knobs[k]).member = values[k];
+      topics::LearnerHyperparameters hyperparameters = base;
+      for (size_t k = 0; k < values.size(); ++k) turn(hyperparameters, options.knobs[k], values[k]);
       std::vector<double> ami(static_cast<size_t>(options.seeds));
       eval::forEachInParallel(options.seeds, [&](int s) {
         const eval::LearningOptions learning{.profile = options.profile,

@@ -14,13 +14,13 @@ struct TuneOptions {
   std::string world = "reef:tuning";
   std::string out;
   std::string profile = "paper";
-  std::vector<std::string> knobs = {"alpha", "beta"};
-  std::string score = "alone";  ///< "alone": one robot's AMI; "team": the fused map's, CLEAR cosine .75
-  int num_robots = 4;           ///< shares; the robot that flies alone flies all of them
-  int32_t observations = 60;    ///< per share
-  int seeds = 3;                ///< a setting's score is the mean over so many
-  int random = 20;              ///< settings drawn at random before the guided ones
-  int trials = 60;              ///< settings in all
+  std::vector<std::string> knobs;  ///< empty: alpha and beta, or temper and beta for "best"
+  std::string score = "alone";     ///< "alone": one robot's AMI; "team": the fused map's, CLEAR cosine .75
+  int num_robots = 4;              ///< shares; the robot that flies alone flies all of them
+  int32_t observations = 60;       ///< per share
+  int seeds = 3;                   ///< a setting's score is the mean over so many
+  int random = 20;                 ///< settings drawn at random before the guided ones
+  int trials = 60;                 ///< settings in all
   uint64_t seed = 1;
 };
 
@@ -28,6 +28,6 @@ struct TuneOptions {
 /// the same command goes on from there. Writes OUT/best.json. Progress goes to stderr.
 /// @returns what best.json holds.
 /// @throws std::invalid_argument naming the option that is wrong.
-nlohmann::ordered_json tune(const TuneOptions& options);
+nlohmann::ordered_json tune(TuneOptions options);
 
 }  // namespace shoal::console

@@ -21,9 +21,11 @@ void addTuneCommand(CLI::App& app, Action& chosen) {
   command->add_option("--out", o.out, "folder for trials.json and best.json");
   command->add_option("--profile", o.profile, "words, and the hyper-parameters that are not searched")
       ->capture_default_str();
-  command->add_option("--knobs", o.knobs, "what is searched: alpha, beta, gamma, neighbor_weight")
-      ->delimiter(',')
-      ->capture_default_str();
+  command
+      ->add_option("--knobs", o.knobs,
+                   "what is searched: alpha, beta, gamma, neighbor_weight for paper (default alpha,beta); "
+                   "temper, beta, coupling for best (default temper,beta)")
+      ->delimiter(',');
   command->add_option("--score", o.score, "alone (one robot's map) or team (the fused map by CLEAR)")
       ->capture_default_str();
   command->add_option("--robots", o.num_robots, "shares of the world")->capture_default_str();

@@ -11,7 +11,7 @@
 #include "shoal/mapping/local_belief.h"
 #include "shoal/matching/descriptors.h"
 #include "shoal/matching/matcher.h"
-#include "shoal/topics/hyperparameters.h"
+#include "shoal/topics/make_learner.h"
 
 namespace shoal::eval {
 
@@ -20,8 +20,8 @@ struct TeamTally;
 /// How robots learn from words in an experiment: as robot_agent does, in this process.
 struct LearningOptions {
   std::string profile = "paper";
-  uint64_t seed = 1;                                       ///< mission seed
-  std::optional<topics::Hyperparameters> hyperparameters;  ///< other than the profile's
+  uint64_t seed = 1;                                              ///< mission seed
+  std::optional<topics::LearnerHyperparameters> hyperparameters;  ///< other than the profile's
 };
 
 /// What one robot believes after `checkpoints[i]` images (ascending; more than there are = all), one belief a

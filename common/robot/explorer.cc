@@ -3,6 +3,7 @@
 
 #include <bit>
 #include <chrono>
+#include <stdexcept>
 
 #include "shoal/demand.h"
 #include "shoal/random.h"
@@ -32,7 +33,7 @@ Explorer::Explorer(const ExplorerOptions& options)
       words_(vision::makeWordExtractor(options.profile)),
       grid_(options.cell_size_m),
       hyperparameters_(options.hyperparameters.value_or(hyperparametersOf(options.profile))),
-      model_(hyperparameters_, words_->vocabularySize(), options.seed, options.robot) {}
+      learner_(topics::makeLearner(hyperparameters_, words_->groups(), options.seed, options.robot)) {}
 
 void Explorer::observe(const world::Observation& observation) {
   SHOAL_DEMAND(observation.number > last_observation_);
@@ -46,7 +47,7 @@ void Explorer::observe(const world::Observation& observation) {
 void Explorer::learn(const world::WordsInCells& words) {
   SHOAL_DEMAND(words.observation > last_observation_);
   Stopwatch watch;
-  model_.observe(words);
+  learner_->observe(words);
   times_ = {.words_ms = 0, .topics_ms = watch.lapMs(), .belief_ms = 0};
   last_observation_ = words.observation;
   dropped_words_ += words.dropped_words;
@@ -54,7 +55,7 @@ void Explorer::learn(const world::WordsInCells& words) {
 
 mapping::LocalBelief Explorer::belief() const {
   Stopwatch watch;
-  topics::Snapshot snapshot = model_.snapshot();
+  topics::Snapshot snapshot = learner_->snapshot();
   mapping::LocalBelief belief{.robot = options_.robot,
                               .version = {options_.epoch, last_observation_},
                               .groups = words_->groups(),
@@ -71,17 +72,18 @@ mapping::LocalBelief Explorer::belief() const {
   return belief;
 }
 
+std::vector<world::TopicId> Explorer::adopt(const std::vector<topics::AdoptedTopic>& others) {
+  auto* const model = dynamic_cast<topics::TopicModel*>(learner_.get());
+  if (model == nullptr) {
+    throw std::invalid_argument("a robot of profile \"" + options_.profile +
+                                "\" learns a label per cell and adopts no topics; use \"paper\"");
+  }
+  return model->adopt(others);
+}
+
 uint64_t Explorer::fingerprint() const {
-  uint64_t hash = words_->fingerprint();
-  const auto add = [&hash](uint64_t value) { hash = hashCombine(hash, value); };
-  const auto addReal = [&add](double value) { add(std::bit_cast<uint64_t>(value)); };
-  const topics::Hyperparameters& h = hyperparameters_;
-  addReal(options_.cell_size_m);
-  add(static_cast<uint64_t>(h.max_topics));
-  for (const double value : {h.alpha, h.beta, h.gamma, h.neighbor_weight, h.tau, h.local_rate})
-    addReal(value);
-  add(static_cast<uint64_t>(h.resamples_per_observation));
-  return hash;
+  return hashCombine(hashCombine(words_->fingerprint(), std::bit_cast<uint64_t>(options_.cell_size_m)),
+                     topics::fingerprint(hyperparameters_));
 }
 
 }  // namespace shoal::robot

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "shoal/mapping/local_belief.h"
-#include "shoal/topics/hyperparameters.h"
+#include "shoal/topics/make_learner.h"
 #include "shoal/topics/topic_model.h"
 #include "shoal/vision/word_extractor.h"
 #include "shoal/world/grid.h"
@@ -18,11 +18,11 @@ namespace shoal::robot {
 /// What makes an explorer. All of it changes what it learns.
 struct ExplorerOptions {
   world::RobotId robot{};
-  std::string profile = "paper";                           ///< words and hyper-parameters
-  uint64_t seed = 1;                                       ///< mission seed
-  double cell_size_m = 0.8;                                ///< edge of a cell, > 0
-  int32_t epoch = 0;                                       ///< grows when the robot has lost its disk
-  std::optional<topics::Hyperparameters> hyperparameters;  ///< other than the profile's, for experiments
+  std::string profile = "paper";                                  ///< words and hyper-parameters
+  uint64_t seed = 1;                                              ///< mission seed
+  double cell_size_m = 0.8;                                       ///< edge of a cell, > 0
+  int32_t epoch = 0;                                              ///< grows when the robot has lost its disk
+  std::optional<topics::LearnerHyperparameters> hyperparameters;  ///< other than the profile's, to experiment
 };
 
 /// Milliseconds that the last observation took, by stage.
@@ -35,7 +35,7 @@ struct StageTimes {
 /// in-process experiments run this same code.
 class Explorer {
  public:
-  /// @throws std::invalid_argument for a profile that is not built or a cell size that is not > 0.
+  /// @throws std::invalid_argument for a profile that does not exist or a cell size that is not > 0.
   explicit Explorer(const ExplorerOptions& options);
 
   /// Learns from one image. Observations come in order of their numbers. The belief is a pure function of the
@@ -49,9 +49,8 @@ class Explorer {
   mapping::LocalBelief belief() const;
 
   /// Learns from others' topics as well as from its own words: TopicModel::adopt().
-  std::vector<world::TopicId> adopt(const std::vector<topics::AdoptedTopic>& others) {
-    return model_.adopt(others);
-  }
+  /// @throws std::invalid_argument unless the robot labels every word, as profile "paper" does.
+  std::vector<world::TopicId> adopt(const std::vector<topics::AdoptedTopic>& others);
 
   const std::vector<world::WordGroup>& groups() const { return words_->groups(); }
   /// Identifies words and hyper-parameters: only robots with equal fingerprints are comparable.
@@ -63,8 +62,8 @@ class Explorer {
   ExplorerOptions options_;
   std::unique_ptr<vision::WordExtractor> words_;
   world::Grid grid_;
-  topics::Hyperparameters hyperparameters_;
-  topics::TopicModel model_;
+  topics::LearnerHyperparameters hyperparameters_;
+  std::unique_ptr<topics::Learner> learner_;
   int32_t last_observation_ = -1;
   int64_t dropped_words_ = 0;
   mutable StageTimes times_;  // measured, never part of a result

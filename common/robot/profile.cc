@@ -5,7 +5,7 @@
 
 namespace shoal::robot {
 
-topics::Hyperparameters hyperparametersOf(const std::string& profile) {
+topics::LearnerHyperparameters hyperparametersOf(const std::string& profile) {
   // The published alpha, beta and gamma give a single topic at any count budget up to a hundred visits a
   // cell (docs/paper.md). These were found at commit 4525be633e20 by
   //     operator_console tune --out DIR
@@ -15,8 +15,8 @@ topics::Hyperparameters hyperparametersOf(const std::string& profile) {
     paper.beta = 0.0593;
     return paper;
   }
-  if (profile == "best") throw std::invalid_argument("profile \"best\" is not built yet; use \"paper\"");
-  throw std::invalid_argument("unknown profile \"" + profile + "\"; profiles: paper");
+  if (profile == "best") return topics::CellLabelHyperparameters{};
+  throw std::invalid_argument("unknown profile \"" + profile + "\"; profiles: best, paper");
 }
 
 }  // namespace shoal::robot

@@ -3,12 +3,12 @@
 
 #include <string>
 
-#include "shoal/topics/hyperparameters.h"
+#include "shoal/topics/make_learner.h"
 
 namespace shoal::robot {
 
-/// The hyper-parameters of a profile.
-/// @throws std::invalid_argument naming a profile that is not built.
-topics::Hyperparameters hyperparametersOf(const std::string& profile);
+/// How robots of a profile learn: "paper" labels every word, "best" every cell.
+/// @throws std::invalid_argument naming a profile that does not exist.
+topics::LearnerHyperparameters hyperparametersOf(const std::string& profile);
 
 }  // namespace shoal::robot

@@ -1,22 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "shoal/topics/hyperparameters.h"
 
-#include <sstream>
-#include <stdexcept>
-#include <string>
+#include "shoal/topics/range.h"
 
 namespace shoal::topics {
-namespace {
-
-template <typename T>
-void checkRange(const char* name, T value, T low, T high) {
-  if (value >= low && value <= high) return;  // false for NaN
-  std::ostringstream message;
-  message << name << " must lie in [" << low << ", " << high << "], got " << value;
-  throw std::invalid_argument(message.str());
-}
-
-}  // namespace
 
 void check(const Hyperparameters& h) {
   checkRange("max_topics", h.max_topics, 1, 10000);

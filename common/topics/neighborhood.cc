@@ -23,17 +23,29 @@ int32_t Neighborhood::insert(const world::CellIndex& cell) {
   const int32_t number = entry->second;
   if (!is_new) return number;
   links_.emplace_back();
+  for (const int32_t other : around(cell)) {
+    if (other == number) continue;
+    link(number, other);
+    link(other, number);
+  }
+  return number;
+}
+
+std::vector<int32_t> Neighborhood::around(const world::CellIndex& cell) const {
+  std::vector<int32_t> known;
+  const auto add = [&](const world::CellIndex& other) {
+    const auto found = number_of_.find(other);
+    if (found != number_of_.end()) known.push_back(found->second);
+  };
+  add(cell);
   for (const int32_t direction : {-1, 1}) {
     for (const world::CellIndex& other : {world::CellIndex{step(cell.x, direction), cell.y, cell.z},
                                           world::CellIndex{cell.x, step(cell.y, direction), cell.z},
                                           world::CellIndex{cell.x, cell.y, step(cell.z, direction)}}) {
-      const auto found = number_of_.find(other);
-      if (found == number_of_.end() || found->second == number) continue;
-      link(number, found->second);
-      link(found->second, number);
+      if (other != cell) add(other);
     }
   }
-  return number;
+  return known;
 }
 
 std::span<const int32_t> Neighborhood::of(int32_t cell) const {

@@ -22,6 +22,9 @@ class Neighborhood {
   /// Number of the cell, created and linked if it is new.
   int32_t insert(const world::CellIndex& cell);
 
+  /// Numbers of the known ones among a cell, itself known or not, and those that adjoin it.
+  std::vector<int32_t> around(const world::CellIndex& cell) const;
+
   int32_t size() const { return static_cast<int32_t>(links_.size()); }
 
   /// Numbers of the adjoining cells, in order of their creation or the cell's own, whichever came later.

@@ -15,12 +15,11 @@ double betaQuantile(double u, double tau) {
   return 1.0 - std::pow(rest, 1.0 / tau);
 }
 
-int32_t nextVisit(const Hyperparameters& hyperparameters, std::span<const int32_t> latest, int32_t num_cells,
-                  Random& random) {
+int32_t nextVisit(const VisitLaw& law, std::span<const int32_t> latest, int32_t num_cells, Random& random) {
   SHOAL_DEMAND(num_cells > 0);
-  const bool local = random.uniform() < hyperparameters.local_rate;
+  const bool local = random.uniform() < law.local_rate;
   if (local && !latest.empty()) return latest[random.below(latest.size())];
-  const double x = betaQuantile(random.uniform(), hyperparameters.tau);
+  const double x = betaQuantile(random.uniform(), law.tau);
   return std::min(static_cast<int32_t>(x * num_cells), num_cells - 1);  // x may round to 1
 }
 

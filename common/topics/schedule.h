@@ -5,7 +5,6 @@
 #include <span>
 
 #include "shoal/random.h"
-#include "shoal/topics/hyperparameters.h"
 
 namespace shoal::topics {
 
@@ -15,6 +14,12 @@ namespace shoal::topics {
 /// function is used; std::pow elsewhere, whose last bit may differ between C libraries.
 double betaQuantile(double u, double tau);
 
+/// How visits are shared out between the newest image and the past.
+struct VisitLaw {
+  double tau = 0.5;         ///< recency of the past, as betaQuantile()
+  double local_rate = 0.5;  ///< share of the visits that go to the latest observation, in [0, 1]
+};
+
 /// Number of the cell to visit next.
 ///
 /// With probability local_rate one of `latest`, each alike; else cell floor(x C), x ~ Beta(1, tau), over all
@@ -23,7 +28,6 @@ double betaQuantile(double u, double tau);
 /// @param latest     Cells of the latest observation, numbers below num_cells.
 /// @param num_cells  C, > 0.
 /// Source: refinement weights of Sunshine (p_refine_rate_local, p_refine_rate_global, tau).
-int32_t nextVisit(const Hyperparameters& hyperparameters, std::span<const int32_t> latest, int32_t num_cells,
-                  Random& random);
+int32_t nextVisit(const VisitLaw& law, std::span<const int32_t> latest, int32_t num_cells, Random& random);
 
 }  // namespace shoal::topics

@@ -66,7 +66,7 @@ void TopicModel::refine(int64_t resamples) {
   const int64_t budget = resamples - overrun_;
   while (num_resamples_ - start < budget) {
     Random random(seed_, kScheduleStream, robot_, num_visits_++);
-    visit(nextVisit(hyperparameters_, latest_, numCells(), random));
+    visit(nextVisit({hyperparameters_.tau, hyperparameters_.local_rate}, latest_, numCells(), random));
   }
   overrun_ = num_resamples_ - start - budget;
   gibbs_.nameTopics(time_);

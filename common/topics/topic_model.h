@@ -9,39 +9,16 @@
 #include "shoal/topics/cell_words.h"
 #include "shoal/topics/gibbs.h"
 #include "shoal/topics/hyperparameters.h"
+#include "shoal/topics/learner.h"
 #include "shoal/topics/neighborhood.h"
 #include "shoal/world/words_in_cells.h"
 
 namespace shoal::topics {
 
-/// One topic: exact counts of the words assigned to it.
-struct TopicCounts {
-  world::TopicId id{};
-  world::Timestamp created;             ///< mission time of the observation that opened it
-  int64_t weight = 0;                   ///< words assigned, the sum of `words`; > 0
-  std::vector<world::WordCount> words;  ///< ascending by word
-};
-
-/// A cell as the model labels it now.
-struct CellLabel {
-  world::CellIndex cell;
-  world::TopicId topic{};        ///< argmax_k n_ck, ties to the lowest id
-  float certainty = 0;           ///< in [0, 1], see TopicModel::snapshot()
-  int32_t seen_observation = 0;  ///< last image that put words here
-  world::Timestamp seen;
-};
-
 /// What others know of a topic, for TopicModel::adopt().
 struct AdoptedTopic {
   std::optional<world::TopicId> own;    ///< the topic of this robot that it is; none: it is new here
   std::vector<world::WordCount> words;  ///< the others' counts, ascending by word
-};
-
-/// What one robot's model says at one moment.
-struct Snapshot {
-  int32_t vocabulary_size = 0;
-  std::vector<TopicCounts> topics;  ///< ascending by id, none empty
-  std::vector<CellLabel> cells;     ///< ascending by cell
 };
 
 /// BNP-ROST: one robot's spatio-temporal topic model, learnt online from visual words in cells.
@@ -58,7 +35,7 @@ struct Snapshot {
 /// run out no new topic opens.
 ///
 /// Source: S. Jamieson et al. 2021, §IV-A, after Y. Girdhar et al. 2016, arXiv:1509.07979.
-class TopicModel {
+class TopicModel final : public Learner {
  public:
   /// @throws std::invalid_argument naming a hyperparameter out of range (check()), or vocabulary_size < 1.
   TopicModel(const Hyperparameters& hyperparameters, int32_t vocabulary_size, uint64_t seed,
@@ -66,7 +43,7 @@ class TopicModel {
 
   /// add(words), then refine(resamples_per_observation). An image without words still refines the past.
   /// @throws as add().
-  void observe(const world::WordsInCells& words);
+  void observe(const world::WordsInCells& words) override;
 
   /// Puts the words into their cells. Each word's first topic is drawn from its conditional (the reference
   /// draws it uniformly), then every new cell is visited once. These draws are not part of any budget.
@@ -87,17 +64,17 @@ class TopicModel {
   /// Source: K. Doherty, G. Flaspohler, N. Roy, Y. Girdhar, ICRA 2018: merge and redistribute.
   std::vector<world::TopicId> adopt(const std::vector<AdoptedTopic>& others);
 
-  /// Topics as exact counts, every cell with its label.
+  /// Topics as exact counts, every cell with its label: argmax_k n_ck, ties to the lowest id.
   ///
   /// The certainty of a label k is the share of the cell's neighbourhood posterior that k holds,
   /// (N_ck + α) / Σ_j (N_cj + α), with N_ck as in Gibbs and j over all K slots when K is fixed (γ = 0), over
   /// the open topics otherwise.
   ///
   /// Cost: O(V K + cells (K + log cells)); about 5 ms for 20 000 cells, V = 15436, K = 12.
-  Snapshot snapshot() const;
+  Snapshot snapshot() const override;
 
-  int32_t numCells() const { return neighborhood_.size(); }
-  int32_t numTopics() const { return gibbs_.slots().numOpen(); }
+  int32_t numCells() const override { return neighborhood_.size(); }
+  int32_t numTopics() const override { return gibbs_.slots().numOpen(); }
   /// Words re-sampled so far by visits, those of add() included.
   int64_t numResamples() const { return num_resamples_; }
 

@@ -33,6 +33,16 @@ void TopicSlots::nameTopics(world::Timestamp now) {
   num_unnamed_ = 0;
 }
 
+void TopicSlots::restore(int32_t num_ids_used, std::span<const Named> open) {
+  SHOAL_DEMAND(num_open_ == 0 && next_id_ == 0);
+  for (const Named& topic : open) {
+    at(topic.slot) = {.open = true, .id = number(topic.id), .created = topic.created};
+  }
+  num_open_ = static_cast<int32_t>(open.size());
+  next_id_ = num_ids_used;
+  findEnds();
+}
+
 world::TopicId TopicSlots::id(int32_t slot) const {
   SHOAL_DEMAND(at(slot).id >= 0);
   return world::TopicId{at(slot).id};

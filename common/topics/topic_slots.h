@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "shoal/world/ids.h"
@@ -37,6 +38,17 @@ class TopicSlots {
 
   /// Gives every open topic without an id the next one, ascending by slot, created `now`.
   void nameTopics(world::Timestamp now);
+
+  /// A topic with its name, and where it is kept.
+  struct Named {
+    int32_t slot = 0;
+    world::TopicId id{};
+    world::Timestamp created;
+  };
+
+  /// Makes fresh slots what others were after nameTopics(): ids below `num_ids_used` are never used again.
+  /// @param open  Ascending by slot, ids below num_ids_used.
+  void restore(int32_t num_ids_used, std::span<const Named> open);
 
   /// Of an open slot, after nameTopics().
   world::TopicId id(int32_t slot) const;

@@ -37,7 +37,19 @@ mapping::LocalBelief beliefAfter(const ExplorerOptions& o, const std::vector<wor
   return explorer.belief();
 }
 
-TEST(ExplorerTest, LabelsTheCellsUnderTheCamera) {
+// A label per word, and a label per cell.
+class EveryExplorer : public ::testing::TestWithParam<topics::LearnerHyperparameters> {
+ public:
+  static ExplorerOptions options(int robot = 0, uint64_t seed = 1) {
+    ExplorerOptions o = robot::options(robot, seed);
+    o.hyperparameters = GetParam();
+    return o;
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Learners, EveryExplorer,
+                         ::testing::Values(topics::Hyperparameters{}, topics::CellLabelHyperparameters{}));
+
+TEST_P(EveryExplorer, LabelsTheCellsUnderTheCamera) {
   const auto images = twoImages();
   const mapping::LocalBelief belief = beliefAfter(options(), images);
   EXPECT_EQ(belief.version, (world::Version{0, 1}));
@@ -51,7 +63,7 @@ TEST(ExplorerTest, LabelsTheCellsUnderTheCamera) {
   }
 }
 
-TEST(ExplorerTest, EveryLabelIsATopicAndEveryWeightTheSumOfItsWords) {
+TEST_P(EveryExplorer, EveryLabelIsATopicAndEveryWeightTheSumOfItsWords) {
   const mapping::LocalBelief belief = beliefAfter(options(), twoImages());
   for (const mapping::BelievedTopic& topic : belief.topics) {
     EXPECT_EQ(topic.weight,
@@ -63,7 +75,7 @@ TEST(ExplorerTest, EveryLabelIsATopicAndEveryWeightTheSumOfItsWords) {
   }
 }
 
-TEST(ExplorerTest, EqualMissionsAreEqualAndSeedsAndRobotsDiffer) {
+TEST_P(EveryExplorer, EqualMissionsAreEqualAndSeedsAndRobotsDiffer) {
   const auto images = twoImages();
   const auto same = [&](const mapping::LocalBelief& a, const mapping::LocalBelief& b) {
     return a.topics == b.topics && a.cells == b.cells;
@@ -72,6 +84,20 @@ TEST(ExplorerTest, EqualMissionsAreEqualAndSeedsAndRobotsDiffer) {
   EXPECT_TRUE(same(belief, beliefAfter(options(), images)));
   EXPECT_FALSE(same(belief, beliefAfter(options(0, 2), images)));
   EXPECT_FALSE(same(belief, beliefAfter(options(1), images)));
+}
+
+TEST(ExplorerTest, OnlyARobotThatLabelsWordsAdoptsTopics) {
+  ExplorerOptions cells = options();
+  cells.hyperparameters = topics::CellLabelHyperparameters{};
+  EXPECT_THROW(Explorer(cells).adopt({}), std::invalid_argument);
+  EXPECT_NO_THROW(Explorer(options()).adopt({}));
+}
+
+TEST(ExplorerTest, HowItLearnsIsInTheFingerprint) {
+  ExplorerOptions cells = options(), others = options();
+  cells.hyperparameters = others.hyperparameters = topics::CellLabelHyperparameters{.coupling = 2};
+  EXPECT_NE(Explorer(options()).fingerprint(), Explorer(cells).fingerprint());
+  EXPECT_EQ(Explorer(others).fingerprint(), Explorer(cells).fingerprint());
 }
 
 TEST(ExplorerTest, AnotherCellSizeIsAnotherFingerprint) {

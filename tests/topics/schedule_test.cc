@@ -11,12 +11,12 @@ namespace shoal::topics {
 namespace {
 
 // Share of visits per cell over many draws.
-std::vector<int64_t> histogram(const Hyperparameters& h, const std::vector<int32_t>& latest,
-                               int32_t num_cells, int64_t num_visits) {
+std::vector<int64_t> histogram(const VisitLaw& law, const std::vector<int32_t>& latest, int32_t num_cells,
+                               int64_t num_visits) {
   std::vector<int64_t> visits(static_cast<size_t>(num_cells));
   for (int64_t i = 0; i < num_visits; ++i) {
     Random random(11, static_cast<uint64_t>(i));
-    ++visits[static_cast<size_t>(nextVisit(h, latest, num_cells, random))];
+    ++visits[static_cast<size_t>(nextVisit(law, latest, num_cells, random))];
   }
   return visits;
 }

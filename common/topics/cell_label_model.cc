@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "shoal/topics/cell_label_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "shoal/demand.h"
+#include "shoal/topics/cell_words.h"
+#include "shoal/topics/schedule.h"
+
+namespace shoal::topics {
+namespace {
+
+constexpr int32_t kFewestTopics = 2;
+// Streams of their own, so that no other room that is given the same mission seed draws the same numbers.
+constexpr uint64_t kCellStream = 0x6c6162656c730001;      // "labels", 1
+constexpr uint64_t kScheduleStream = 0x6c6162656c730002;  // "labels", 2
+
+const CellLabelHyperparameters& checked(const CellLabelHyperparameters& hyperparameters) {
+  check(hyperparameters);
+  return hyperparameters;
+}
+
+// Adds `more` to `words`, both ascending by word.
+void merge(std::vector<world::WordCount>& words, const std::vector<world::WordCount>& more) {
+  std::vector<world::WordCount> sum;
+  sum.reserve(words.size() + more.size());
+  auto word = words.begin();
+  for (const world::WordCount& w : more) {
+    for (; word != words.end() && word->word < w.word; ++word) sum.push_back(*word);
+    sum.push_back(w);
+    if (word != words.end() && word->word == w.word) sum.back().count += (word++)->count;
+  }
+  sum.insert(sum.end(), word, words.end());
+  words = std::move(sum);
+}
+
+}  // namespace
+
+CellLabelModel::CellLabelModel(const CellLabelHyperparameters& hyperparameters,
+                               const std::vector<world::WordGroup>& groups, uint64_t seed,
+                               world::RobotId robot)
+    : hyperparameters_(checked(hyperparameters)),
+      scale_(ConditionalScale::of(hyperparameters.temper, hyperparameters.coupling)),
+      seed_(seed),
+      robot_(static_cast<uint64_t>(number(robot))),
+      counts_(groups, hyperparameters.max_topics, hyperparameters.beta),
+      slots_(hyperparameters.max_topics) {
+  const auto stride = static_cast<size_t>(counts_.stride());
+  cells_of_.resize(stride);
+  scores_.resize(stride);
+  alike_.resize(stride);
+  weights_.resize(stride);
+}
+
+void CellLabelModel::observe(const world::WordsInCells& words) {
+  add(words);
+  refine(static_cast<int64_t>(hyperparameters_.visits_per_cell * static_cast<double>(latest_.size())));
+}
+
+void CellLabelModel::add(const world::WordsInCells& words) {
+  check(words, counts_.vocabularySize());
+  if (words.observation <= observation_) {
+    throw std::invalid_argument("observation numbers must ascend from 0, got " +
+                                std::to_string(words.observation) + " after " + std::to_string(observation_));
+  }
+  observation_ = words.observation;
+  time_ = words.time;
+  latest_.clear();
+  for (const world::CellWords& fresh : words.cells) {
+    const int32_t c = cellFor(fresh.cell);
+    latest_.push_back(c);
+    LabelledCell& cell = cells_[static_cast<size_t>(c)];
+    cell.seen_observation = observation_;
+    cell.seen = time_;
+    if (cell.slot >= 0) counts_.remove(cell.words, cell.slot);
+    merge(cell.words, fresh.words);
+    redraw(c, false);
+  }
+  slots_.nameTopics(time_);
+}
+
+void CellLabelModel::refine(int64_t visits) {
+  if (visits < 0) throw std::invalid_argument("visits must be at least 0, got " + std::to_string(visits));
+  if (cells_.empty()) return;
+  for (int64_t i = 0; i < visits; ++i) {
+    Random random(seed_, kScheduleStream, robot_, num_visits_++);
+    redraw(nextVisit({hyperparameters_.tau, hyperparameters_.local_rate}, latest_, numCells(), random), true);
+  }
+  slots_.nameTopics(time_);
+}
+
+int32_t CellLabelModel::topicLimit() const {
+  const int32_t grown = std::max(numCells() / hyperparameters_.cells_per_topic, kFewestTopics);
+  return std::min(grown, hyperparameters_.max_topics);
+}
+
+int32_t CellLabelModel::cellFor(const world::CellIndex& index) {
+  const int32_t c = neighborhood_.insert(index);
+  if (static_cast<size_t>(c) == cells_.size()) cells_.push_back({.index = index, .words = {}, .seen = {}});
+  return c;
+}
+
+// Draws the label of a cell anew, whose words are in the counts of its label or (`words_are_counted` false)
+// in none; afterwards they are in those of the label drawn.
+void CellLabelModel::redraw(int32_t c, bool words_are_counted) {
+  LabelledCell& cell = cells_[static_cast<size_t>(c)];
+  const int32_t old = cell.slot;
+  counts_.logLikelihoods(cell.words, words_are_counted ? old : -1, scores_);
+
+  std::ranges::fill(alike_, kNotALabel);
+  const int32_t limit = topicLimit();
+  for (int32_t k = 0; k < limit; ++k) {
+    if (slots_.isOpen(k) || slots_.canOpen()) alike_[static_cast<size_t>(k)] = 0;
+  }
+  for (const int32_t neighbor : neighborhood_.of(c)) {
+    const int32_t slot = cells_[static_cast<size_t>(neighbor)].slot;
+    if (slot >= 0) ++alike_[static_cast<size_t>(slot)];  // in one image some are not drawn yet
+  }
+  weighLabels(scores_, alike_, scale_, weights_);
+  Random random(hashCombine(seed_, kCellStream), robot_, static_cast<uint64_t>(c), cell.num_draws++);
+  const int32_t drawn = drawLabel(weights_, random);
+  const uint64_t sum = std::accumulate(weights_.begin(), weights_.end(), uint64_t{0});
+  cell.certainty = static_cast<float>(static_cast<double>(weights_[static_cast<size_t>(drawn)]) /
+                                      static_cast<double>(sum));
+
+  if (words_are_counted && drawn == old) return;
+  if (words_are_counted) counts_.remove(cell.words, old);
+  counts_.add(cell.words, drawn);
+  relabel(cell, drawn);
+}
+
+// Opens and retires labels as cells come and go.
+void CellLabelModel::relabel(LabelledCell& cell, int32_t slot) {
+  if (cell.slot == slot) return;
+  if (cells_of_[static_cast<size_t>(slot)]++ == 0) slots_.open(slot);
+  if (cell.slot >= 0 && --cells_of_[static_cast<size_t>(cell.slot)] == 0) slots_.close(cell.slot);
+  cell.slot = slot;
+}
+
+Snapshot CellLabelModel::snapshot() const {
+  Snapshot snapshot{counts_.vocabularySize(), topics(), {}};
+  snapshot.cells.reserve(cells_.size());
+  for (const LabelledCell& cell : cells_) {
+    snapshot.cells.push_back(
+        {cell.index, slots_.id(cell.slot), cell.certainty, cell.seen_observation, cell.seen});
+  }
+  std::ranges::sort(snapshot.cells, {}, &CellLabel::cell);
+  return snapshot;
+}
+
+std::vector<double> CellLabelModel::surprise(const world::WordsInCells& words,
+                                             Surroundings surroundings) const {
+  check(words, counts_.vocabularySize());
+  std::vector<double> bits(words.cells.size());
+  if (cells_.empty()) return bits;
+  std::vector<int64_t> scores(scores_.size());
+  std::vector<int32_t> around(cells_of_.size());
+  for (size_t i = 0; i < bits.size(); ++i) {
+    const world::CellWords& seen = words.cells[i];
+    std::ranges::fill(around, 0);
+    if (surroundings == Surroundings::kNeighborhood) {
+      for (const int32_t c : neighborhood_.around(seen.cell)) {
+        ++around[static_cast<size_t>(cells_[static_cast<size_t>(c)].slot)];
+      }
+    }
+    const bool alone = std::ranges::count(around, 0) == std::ssize(around);
+    const int64_t num_words =
+        std::accumulate(seen.words.begin(), seen.words.end(), int64_t{0},
+                        [](int64_t sum, const world::WordCount& w) { return sum + w.count; });
+    counts_.logLikelihoods(seen.words, -1, scores);
+    bits[i] = bitsPerWord(scores, alone ? cells_of_ : around, num_words);
+  }
+  return bits;
+}
+
+std::vector<TopicCounts> CellLabelModel::topics() const {
+  std::vector<TopicCounts> topics(static_cast<size_t>(slots_.end()));
+  for (int32_t w = 0; w < counts_.vocabularySize(); ++w) {
+    const std::span<const int32_t> counts = counts_.wordCounts(w);
+    for (size_t k = 0; k < topics.size(); ++k) {
+      if (counts[k] == 0) continue;
+      topics[k].words.push_back({w, counts[k]});
+      topics[k].weight += counts[k];
+    }
+  }
+  for (int32_t k = 0; k < slots_.end(); ++k) {
+    if (!slots_.isOpen(k)) continue;
+    topics[static_cast<size_t>(k)].id = slots_.id(k);
+    topics[static_cast<size_t>(k)].created = slots_.created(k);
+  }
+  std::erase_if(topics, [](const TopicCounts& topic) { return topic.words.empty(); });
+  std::ranges::sort(topics, {}, &TopicCounts::id);
+  return topics;
+}
+
+}  // namespace shoal::topics

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "shoal/random.h"
+#include "shoal/topics/cell_label_hyperparameters.h"
+#include "shoal/topics/label_conditional.h"
+#include "shoal/topics/label_counts.h"
+#include "shoal/topics/learner.h"
+#include "shoal/topics/neighborhood.h"
+#include "shoal/topics/surprise.h"
+#include "shoal/topics/topic_slots.h"
+#include "shoal/world/words_in_cells.h"
+
+namespace shoal::topics {
+
+/// One robot's map as one label per cell: a mixture of multinomials over kinds of words, smoothed by a Potts
+/// prior over adjoining cells, learnt online.
+///
+/// A visit of a cell takes its words out of its label's counts, draws its label anew,
+///
+///     p(z = k) ∝ exp( t Σ_words ln((n_gkw + β) / (n_gk + V_g β)) + J #(neighbours with label k) ),
+///
+/// and puts the words back. Words of one cell are far from independent; t makes up for that. Labels compete
+/// on equal terms, however many cells they have: a prior in favour of large ones would eat small classes. At
+/// most K labels are in use, and not more than one for every `cells_per_topic` cells seen (2 at least), so
+/// that a robot that has seen little does not split hairs.
+///
+/// observe() takes one image: its words join their cells, each of which is drawn anew, then a fixed count of
+/// cells is visited (schedule.h). The cost of an observation does not depend on how much was seen before; a
+/// visit costs (different words of the cell) x K additions.
+///
+/// The result is a function of (hyperparameters, groups, seed, robot, the sequence of calls): every draw has
+/// random numbers of its own, keyed by seed, robot, cell and draw, and the conditional is computed in
+/// integers. Equal inputs give equal bytes on every machine. A value: copying it forks the chain. Not
+/// thread-safe.
+///
+/// Topic ids lie in [0, 9999], ascend with creation and are never used again: a label that loses its last
+/// cell retires, and is another topic when it is drawn again (TopicSlots).
+///
+/// Why not TopicModel: a label per cell with this prior makes better maps from the same words in fewer
+/// visits. It is the clustering half of the spatial models that BNP-ROST comes from, with the mixture over
+/// topics inside a cell left out.
+class CellLabelModel final : public Learner {
+ public:
+  /// @throws std::invalid_argument naming a hyperparameter out of range, or groups that leave gaps.
+  CellLabelModel(const CellLabelHyperparameters& hyperparameters, const std::vector<world::WordGroup>& groups,
+                 uint64_t seed, world::RobotId robot);
+
+  /// add(words), then refine(visits_per_cell x its cells, rounded down).
+  void observe(const world::WordsInCells& words) override;
+
+  /// Puts the words into their cells and draws the label of each of these cells. These draws are not part of
+  /// any budget.
+  /// @throws as observe().
+  void add(const world::WordsInCells& words);
+
+  /// Visits so many cells.
+  /// @throws std::invalid_argument if visits < 0.
+  void refine(int64_t visits);
+
+  /// Topics as exact counts, every cell with its label.
+  ///
+  /// The certainty of a label is its p(z = k) in the conditional that it was last drawn from.
+  ///
+  /// Cost: O(V K + cells log cells).
+  Snapshot snapshot() const override;
+
+  /// How surprising an image is to the model as it stands, before observe(): bitsPerWord() of each of its
+  /// cells, in order, 0 while the map is empty. Cells that adjoin nothing known are compared with the whole
+  /// map.
+  /// @throws std::invalid_argument if `words` breaks its contract.
+  std::vector<double> surprise(const world::WordsInCells& words, Surroundings surroundings) const;
+
+  /// The whole state as bytes: what is resumed from them goes on as this model does, byte for byte.
+  /// About 48 bytes a cell and 8 a different word of a cell.
+  std::vector<uint8_t> checkpoint() const;
+
+  /// The model that wrote the checkpoint, given what it was made with.
+  /// @throws std::runtime_error for bytes that are damaged, of another version, or of a model that was made
+  /// with
+  ///         something else; std::invalid_argument as the constructor.
+  static CellLabelModel resumed(const CellLabelHyperparameters& hyperparameters,
+                                const std::vector<world::WordGroup>& groups, uint64_t seed,
+                                world::RobotId robot, std::span<const uint8_t> checkpoint);
+
+  int32_t numCells() const override { return neighborhood_.size(); }
+  int32_t numTopics() const override { return slots_.numOpen(); }
+  /// How many labels may be in use now.
+  int32_t topicLimit() const;
+  int64_t numVisits() const { return static_cast<int64_t>(num_visits_); }
+
+ private:
+  struct LabelledCell {
+    world::CellIndex index;
+    std::vector<world::WordCount> words;  // ascending, all images together
+    float certainty = 0;                  // p(z = slot) when it was last drawn
+    int32_t slot = -1;                    // its label; -1 before the first draw
+    uint32_t num_draws = 0;               // names its next random numbers
+    int32_t seen_observation = 0;
+    world::Timestamp seen;
+  };
+
+  uint64_t identity() const;
+  int32_t cellFor(const world::CellIndex& index);
+  void redraw(int32_t c, bool words_are_counted);
+  void relabel(LabelledCell& cell, int32_t slot);
+  std::vector<TopicCounts> topics() const;
+
+  const CellLabelHyperparameters hyperparameters_;
+  const ConditionalScale scale_;
+  const uint64_t seed_;
+  const uint64_t robot_;
+  LabelCounts counts_;
+  TopicSlots slots_;
+  Neighborhood neighborhood_;
+  std::vector<LabelledCell> cells_;  // by number, as in neighborhood_
+  std::vector<int32_t> cells_of_;    // by slot
+
+  std::vector<int32_t> latest_;  // cells of the latest observation
+  int32_t observation_ = -1;     // its number
+  world::Timestamp time_;        // and its time
+  uint64_t num_visits_ = 0;      // of refine(): names the schedule's next random numbers
+
+  std::vector<int64_t> scores_;  // of the cell being drawn, by slot
+  std::vector<int32_t> alike_;
+  std::vector<uint64_t> weights_;
+};
+
+}  // namespace shoal::topics

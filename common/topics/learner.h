@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+#include "shoal/topics/snapshot.h"
+#include "shoal/world/words_in_cells.h"
+
+namespace shoal::topics {
+
+/// What a robot learns its topics with: images come in as words in cells, topics and labels come out. The
+/// state is a function of how the learner was made and of the images so far. Topic ids ascend with creation
+/// and are never used again.
+class Learner {
+ public:
+  virtual ~Learner() = default;
+
+  /// Takes in one image and does the work that every image is worth: a count, never a clock.
+  /// @throws std::invalid_argument, leaving the learner as it was, if `words` breaks its contract or its
+  ///         observation number is not above the last one's.
+  virtual void observe(const world::WordsInCells& words) = 0;
+
+  /// Topics as exact counts, every cell with its label. The only call that reads everything.
+  virtual Snapshot snapshot() const = 0;
+
+  virtual int32_t numCells() const = 0;
+  virtual int32_t numTopics() const = 0;
+
+ protected:
+  Learner() = default;
+  Learner(const Learner&) = default;
+  Learner& operator=(const Learner&) = default;
+};
+
+}  // namespace shoal::topics

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "shoal/topics/make_learner.h"
+
+#include <bit>
+#include <initializer_list>
+
+#include "shoal/random.h"
+#include "shoal/topics/cell_label_model.h"
+#include "shoal/topics/topic_model.h"
+
+namespace shoal::topics {
+namespace {
+
+uint64_t hashOf(std::initializer_list<double> values) {
+  uint64_t hash = 0;
+  for (const double value : values) hash = hashCombine(hash, std::bit_cast<uint64_t>(value));
+  return hash;
+}
+
+// Counts below 2^53 are exact as double.
+uint64_t hashOf(const Hyperparameters& h) {
+  return hashOf({static_cast<double>(h.max_topics), h.alpha, h.beta, h.gamma, h.neighbor_weight, h.tau,
+                 h.local_rate, static_cast<double>(h.resamples_per_observation)});
+}
+
+uint64_t hashOf(const CellLabelHyperparameters& h) {
+  return hashOf({static_cast<double>(h.max_topics), static_cast<double>(h.cells_per_topic), h.temper, h.beta,
+                 h.coupling, h.tau, h.local_rate, h.visits_per_cell});
+}
+
+}  // namespace
+
+std::unique_ptr<Learner> makeLearner(const LearnerHyperparameters& hyperparameters,
+                                     const std::vector<world::WordGroup>& groups, uint64_t seed,
+                                     world::RobotId robot) {
+  if (const auto* cells = std::get_if<CellLabelHyperparameters>(&hyperparameters)) {
+    return std::make_unique<CellLabelModel>(*cells, groups, seed, robot);
+  }
+  const int32_t vocabulary_size = groups.empty() ? 0 : groups.back().first + groups.back().size;
+  return std::make_unique<TopicModel>(std::get<Hyperparameters>(hyperparameters), vocabulary_size, seed,
+                                      robot);
+}
+
+uint64_t fingerprint(const LearnerHyperparameters& hyperparameters) {
+  return hashCombine(hyperparameters.index(),
+                     std::visit([](const auto& h) { return hashOf(h); }, hyperparameters));
+}
+
+}  // namespace shoal::topics
