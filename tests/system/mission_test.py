@@ -125,6 +125,25 @@ class Mission(unittest.TestCase):
                 f"robots/R0{r}/{name}" for r in range(3) for name in ("map.csv", "topics.json", "poses.txt")]:
             self.assertEqual(read(os.path.join(self.a, path)), read(os.path.join(b, path)), path)
 
+    def test_a_bad_link_gives_the_same_bytes(self):
+        link = os.path.join(self.top, "bay.json")
+        with open(link, "w", encoding="utf-8") as file:
+            json.dump({"like": "mesh", "loss": 0.3, "delay_s": 1.5, "reordering": 0.2, "duplication": 0.1,
+                       "partitions": [{"from_s": 2, "until_s": 8, "groups": [["R00"], ["R01", "R02", "OPERATOR"]]}]}, file)
+        out = os.path.join(self.top, "bay")
+        launch(out, "--link", link)
+        for path in ["global_map.csv", "labels.csv"]:
+            self.assertEqual(read(os.path.join(self.a, path)), read(os.path.join(out, path)), path)
+        with open(os.path.join(out, "summary.json"), encoding="utf-8") as file:
+            summary = json.load(file)
+        check_schema("summary", summary)
+        self.assertEqual((summary["link"], summary["converged"]), (link, True))
+        said = re.search(r"the link: (\d+) messages of others, \d+ delivered; lost (\d+), .* parted (\d+)",
+                         read(os.path.join(out, "logs", "OPERATOR.log")).decode())
+        sent, lost, parted = (int(n) for n in said.groups())
+        self.assertGreater(lost, 0.15 * sent)
+        self.assertGreater(parted, 0)
+
     def test_another_seed_gives_another_map(self):
         c = os.path.join(self.top, "c")
         run(CONSOLE, "launch", "--world", "reef:tuning", *SIZE[:-1], "8", "--out", c)
@@ -183,7 +202,7 @@ class Mission(unittest.TestCase):
             (2, ["launch", "--world", "reef:tuning", "--out", self.a]),  # holds a finished mission
             (2, ["launch", "--world", "reef:tuning", "--matcher", "shoal", "--out", self.top + "/x"]),
             (2, ["launch", "--world", "reef:tuning", "--profile", "best", "--out", self.top + "/x"]),
-            (2, ["launch", "--world", "reef:tuning", "--link", "mesh", "--out", self.top + "/x"]),
+            (2, ["launch", "--world", "reef:tuning", "--link", "string", "--out", self.top + "/x"]),
             (1, ["evaluate", "--run", self.top, "--world", "reef:tuning"]),
             (1, ["status", "--run", self.top]),
             (1, ["status", "--node", self.top]),
