@@ -7,6 +7,7 @@
 #include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
 
+#include "fusion_node/link.h"
 #include "fusion_node/node.h"
 #include "fusion_node/process.h"
 #include "shoal/comms/channels.h"
@@ -18,17 +19,23 @@ namespace {
 
 using namespace shoal;  // NOLINT: a main file
 
-int run(const fusion_node::NodeOptions& options, const std::string& url) {
-  comms::LcmBus link(url);
+int run(const fusion_node::NodeOptions& options, const std::string& url, const std::string& link_name,
+        uint64_t seed) {
+  const comms::LinkModel model = comms::readLink(link_name);
+  comms::LcmBus air(url);
+  const auto emulated =
+      fusion_node::emulated(air, model, {options.name, options.mission, seed, options.rate});
   std::unique_ptr<comms::LcmBus> local;
   if (comms::localUrl(url) != comms::composeUrl(comms::parseUrl(url))) {
     local = std::make_unique<comms::LcmBus>(comms::localUrl(url));
   }
-  fusion_node::Node node(options, link, local ? *local : link);
-  spdlog::info("listening on {}, mission {}, matcher {}", link.url(), options.mission,
+  comms::Bus& link = emulated ? static_cast<comms::Bus&>(*emulated) : air;
+  fusion_node::Node node(options, link, local ? *local : air);
+  spdlog::info("listening on {}, link {}, mission {}, matcher {}", air.url(), link_name, options.mission,
                options.matcher.matcher);
   while (!fusion_node::stopRequested()) node.turn(20);
   node.finish();
+  fusion_node::logLink(emulated.get());
   return 0;
 }
 
@@ -36,7 +43,9 @@ int run(const fusion_node::NodeOptions& options, const std::string& url) {
 
 int main(int argc, char** argv) {
   fusion_node::NodeOptions options;
-  std::string url = comms::kDefaultUrl, rate = "1", mission = "shoal", log_level = "info", sigma = "auto";
+  std::string url = comms::kDefaultUrl, rate = "1", mission = "shoal", log_level = "info", sigma = "auto",
+              link = "clean";
+  uint64_t seed = 1;
   CLI::App app{"Hears a team of robots, matches their labels and republishes one consistent map.",
                "fusion_node"};
   app.set_version_flag("--version", std::string("fusion_node ") + version() + " (" + commit() + ")");
@@ -49,6 +58,9 @@ int main(int argc, char** argv) {
   app.add_option("--budget", options.budget, "bytes per second of mission time on the link, 0 = unlimited")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
+  app.add_option("--link", link, "emulated on the receiving side: clean, mesh, acoustic, satellite or a file")
+      ->capture_default_str();
+  app.add_option("--seed", seed, "mission seed: decides what the emulated link loses")->capture_default_str();
   app.add_option("--matcher", options.matcher.matcher, "id, hungarian, clear or shoal")
       ->capture_default_str();
   auto* similarity = app.add_option("--similarity", options.matcher.similarity,
@@ -80,7 +92,7 @@ int main(int argc, char** argv) {
     if (similarity->count() == 0)
       options.matcher.similarity = matching::usualSimilarity(options.matcher.matcher);
     comms::channelName(options.name, "HEARTBEAT");  // a bad node name is a bad flag
-    return run(options, url);
+    return run(options, url, link, seed);
   } catch (const std::invalid_argument& error) {
     std::fprintf(stderr, "fusion_node: %s\n", error.what());
     return 2;

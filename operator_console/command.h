@@ -19,8 +19,10 @@ void addPlayCommand(CLI::App& app, Action& chosen);
 /// status, labels, at X Y, export: one grammar for a running node, a finished run and a recording.
 void addQuestionCommands(CLI::App& app, Action& chosen);
 void addEvaluateCommand(CLI::App& app, Action& chosen);
+void addReplayCommand(CLI::App& app, Action& chosen);
 void addReproduceCommand(CLI::App& app, Action& chosen);
 void addTuneCommand(CLI::App& app, Action& chosen);
+void addVerifyCommand(CLI::App& app, Action& chosen);
 
 /// Subcommands that are not built yet: refused by name, whatever follows them.
 void addUnbuiltCommands(CLI::App& app, Action& chosen);

@@ -71,6 +71,7 @@ std::string finishRun(const RunInfo& run) {
       {"mission_id", options.mission},
       {"commit", commit()},
       {"world", options.world},
+      {"link", options.link},
       {"cell_size_m", options.cell_size_m},
       {"altitude_m", options.altitude_m},
       {"frame_period_s", options.frame_period_s},

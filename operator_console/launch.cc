@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
@@ -25,6 +26,7 @@
 #include "shoal/comms/kernel_limits.h"
 #include "shoal/comms/lcm_bus.h"
 #include "shoal/comms/lcm_url.h"
+#include "shoal/comms/link_model.h"
 #include "shoal/random.h"
 
 namespace shoal::console {
@@ -307,9 +309,14 @@ int launch(LaunchOptions options) {
   if (const auto advice = comms::receiveBufferAdvice()) {
     spdlog::warn("the kernel's receive buffers are small, datagrams may be lost; this helps: {}", *advice);
   }
+  const double carried = comms::readLink(options.link).rate_bytes_per_s;
+  if (carried > 0 && (options.budget == 0 || static_cast<double>(options.budget) > carried)) {
+    spdlog::warn("a link of {} carries {} bytes per second and loses what is above; --budget {:.0f} fits it",
+                 options.link, carried, std::floor(carried));
+  }
   catchStopSignals();
-  spdlog::info("mission {}: {} robots over {} on {}, files in {}", options.mission, options.num_robots,
-               options.world, options.lcm_url, options.out);
+  spdlog::info("mission {}: {} robots over {} on {}, link {}, files in {}", options.mission,
+               options.num_robots, options.world, options.lcm_url, options.link, options.out);
   return Mission(options).run(url_was_given);
 }
 

@@ -34,7 +34,9 @@ void addLaunchCommand(CLI::App& app, Action& chosen) {
   command
       ->add_option("--budget", o.budget, "bytes per second of mission time for each process, 0 = unlimited")
       ->capture_default_str();
-  command->add_option("--link", o.link, "clean; mesh, acoustic, satellite and files are not built yet")
+  command
+      ->add_option("--link", o.link,
+                   "what every process hears through: clean, mesh, acoustic, satellite or a file")
       ->capture_default_str();
   command->add_option("--rate", o.rate, "mission seconds per wall second: 1, 10, or max")
       ->capture_default_str();

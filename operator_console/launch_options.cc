@@ -6,6 +6,7 @@
 
 #include "fusion_node/process.h"
 #include "shoal/comms/lcm_url.h"
+#include "shoal/comms/link_model.h"
 
 namespace shoal::console {
 namespace {
@@ -33,12 +34,7 @@ void check(const LaunchOptions& options) {
     throw std::invalid_argument("--budget must be 0 (unlimited) to 2147483647 bytes per second, got " +
                                 std::to_string(options.budget));
   }
-  if (options.link == "mesh" || options.link == "acoustic" || options.link == "satellite") {
-    throw std::invalid_argument("--link " + options.link + " is not built yet; clean is");
-  }
-  if (options.link != "clean") {
-    throw std::invalid_argument("--link " + options.link + ": link files are not built yet; clean is");
-  }
+  comms::readLink(options.link);
   if (options.profile == "best") throw std::invalid_argument("--profile best is not built yet; paper is");
   if (options.profile != "paper") {
     throw std::invalid_argument("--profile must be paper, got \"" + options.profile + "\"");

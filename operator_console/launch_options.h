@@ -16,9 +16,9 @@ struct LaunchOptions {
   int num_robots = 0;          ///< in [1, 256]; 0 = 12 over a world, as many as were recorded
   int32_t observations = 250;  ///< per robot, 0 = as many as cover the share, or all
   uint64_t seed = 1;
-  int64_t budget = 2000;  ///< bytes per second of mission time, each; 0 = unlimited
-  std::string link = "clean";
-  std::string rate = "max";  ///< mission seconds per wall second, or "max"
+  int64_t budget = 2000;       ///< bytes per second of mission time, each; 0 = unlimited
+  std::string link = "clean";  ///< clean, mesh, acoustic, satellite or a file: docs/link.md
+  std::string rate = "max";    ///< mission seconds per wall second, or "max"
   std::string profile = "paper";
   matching::MatcherOptions matcher;
   double cell_size_m = 0;  ///< 0 = the world's own

@@ -2,10 +2,47 @@
 #include "operator_console/log_check.h"
 
 #include "fusion_node/mission_state.h"
+#include "operator_console/piece_audit.h"
+#include "shoal/comms/channels.h"
 #include "shoal/comms/log_reader.h"
+#include "shoal/wire/message_kind.h"
+#include "shoal/wire/piece_codec.h"
 #include "shoal/world/ids.h"
 
 namespace shoal::console {
+namespace {
+
+PieceAudit auditOf(const std::string& path, int32_t mission) {
+  PieceAudit pieces;
+  comms::LogReader log(path);
+  while (const auto event = log.next()) {
+    const auto header = wire::peek(event->packet.bytes);
+    const auto channel = comms::parseChannel(event->packet.channel);
+    if (!header || !channel || header->mission != mission) continue;
+    const auto piece = wire::decodePiece(header->kind, event->packet.bytes);
+    if (piece && world::name(piece->key.robot) == channel->node) pieces.hear(*piece);
+  }
+  return pieces;
+}
+
+}  // namespace
+
+std::vector<std::string> lackingPieces(const std::string& path, int32_t mission,
+                                       const mapping::BeliefStore& beliefs,
+                                       const std::map<std::string, wire::Heartbeat>& heartbeats) {
+  std::map<world::RobotId, const wire::Heartbeat*> incomplete;
+  for (const auto& [node, heartbeat] : heartbeats) {
+    const auto robot = world::parseRobotId(node);
+    if (robot && beliefs.digestOf(*robot) != heartbeat.own_digest) incomplete[*robot] = &heartbeat;
+  }
+  if (incomplete.empty()) return {};
+  const PieceAudit pieces = auditOf(path, mission);
+  std::vector<std::string> lacking;
+  for (const auto& [robot, heartbeat] : incomplete) {
+    for (std::string& line : pieces.lacking(robot, *heartbeat)) lacking.push_back(std::move(line));
+  }
+  return lacking;
+}
 
 std::vector<std::string> lackingInLog(const std::string& path, int32_t mission, uint64_t state_digest,
                                       const std::map<std::string, wire::Heartbeat>& heartbeats) {
@@ -14,13 +51,8 @@ std::vector<std::string> lackingInLog(const std::string& path, int32_t mission, 
   comms::LogReader log(path);
   while (const auto event = log.next()) state.hear(event->packet, refused);
 
-  std::vector<std::string> lacking;
-  for (const auto& [node, heartbeat] : heartbeats) {
-    const auto robot = world::parseRobotId(node);
-    if (robot && state.beliefs().digestOf(*robot) != heartbeat.own_digest) {
-      lacking.push_back(path + " does not hold all of " + node);
-    }
-  }
+  std::vector<std::string> lacking = lackingPieces(path, mission, state.beliefs(), heartbeats);
+  for (std::string& line : lacking) line = path + " lacks " + line;
   if (lacking.empty() && state.beliefs().digest() != state_digest) {
     lacking.push_back(path + " adds up to another state than OPERATOR's");
   }

@@ -6,13 +6,21 @@
 #include <string>
 #include <vector>
 
+#include "shoal/mapping/belief_store.h"
 #include "shoal/wire/heartbeat_codec.h"
 
 namespace shoal::console {
 
-/// What a recording lacks to rebuild a mission's state by itself: one line for each robot whose share of the
-/// state, as its heartbeat tells it, the recording does not add up to. Empty when it holds everything and
-/// adds up to `state_digest`.
+/// What a recording lacks of what robots said they had, in the last heartbeat of each: PieceAudit::lacking()
+/// of each robot whose share has another digest. Empty when nothing lacks.
+/// @param beliefs  what the recording adds up to.
+/// @throws std::runtime_error naming the file when it cannot be read.
+std::vector<std::string> lackingPieces(const std::string& path, int32_t mission,
+                                       const mapping::BeliefStore& beliefs,
+                                       const std::map<std::string, wire::Heartbeat>& heartbeats);
+
+/// What a recording lacks to rebuild a mission's state by itself: lackingPieces(), or else a line when it
+/// does not add up to `state_digest`. Empty when it holds everything.
 /// @throws std::runtime_error naming the file when it cannot be read.
 std::vector<std::string> lackingInLog(const std::string& path, int32_t mission, uint64_t state_digest,
                                       const std::map<std::string, wire::Heartbeat>& heartbeats);

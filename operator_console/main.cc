@@ -30,6 +30,8 @@ int main(int argc, char** argv) {
   console::addMatchCommand(app, chosen);
   console::addPlayCommand(app, chosen);
   console::addEvaluateCommand(app, chosen);
+  console::addReplayCommand(app, chosen);
+  console::addVerifyCommand(app, chosen);
   console::addReproduceCommand(app, chosen);
   console::addTuneCommand(app, chosen);
   console::addQuestionCommands(app, chosen);

@@ -53,7 +53,8 @@ std::vector<std::string> flightArguments(const LaunchOptions& options) {
 
 std::vector<std::string> linkArguments(const LaunchOptions& options) {
   return {"--lcm-url", options.lcm_url, "--budget",  std::to_string(options.budget),
-          "--rate",    options.rate,    "--mission", std::to_string(options.mission)};
+          "--rate",    options.rate,    "--mission", std::to_string(options.mission),
+          "--link",    options.link};
 }
 
 }  // namespace
@@ -68,10 +69,11 @@ Command loggerCommand(const LaunchOptions& options) {
 Command operatorCommand(const LaunchOptions& options) {
   std::vector<std::string> arguments = {"--node", "OPERATOR"};
   append(arguments, linkArguments(options));
-  append(arguments, {"--matcher", options.matcher.matcher, "--similarity", options.matcher.similarity,
-                     "--sigma", options.matcher.sigma ? text(*options.matcher.sigma) : "auto",
-                     "--cell-size-m", text(options.cell_size_m), "--out", options.out, "--state",
-                     operatorStateDir(options), "--log-level", options.log_level});
+  append(arguments, {"--seed", std::to_string(options.seed), "--matcher", options.matcher.matcher,
+                     "--similarity", options.matcher.similarity, "--sigma",
+                     options.matcher.sigma ? text(*options.matcher.sigma) : "auto", "--cell-size-m",
+                     text(options.cell_size_m), "--out", options.out, "--state", operatorStateDir(options),
+                     "--log-level", options.log_level});
   return {"OPERATOR", programBeside("fusion_node"), arguments, logPath(options, "OPERATOR")};
 }
 

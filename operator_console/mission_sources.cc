@@ -2,17 +2,13 @@
 #include "operator_console/mission_sources.h"
 
 #include <filesystem>
-#include <map>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <stdexcept>
 
-#include "fusion_node/mission_state.h"
 #include "fusion_node/query_server.h"
-#include "shoal/comms/log_reader.h"
+#include "operator_console/recorded_mission.h"
 #include "shoal/mapping/atomic_file.h"
 #include "shoal/mapping/map_files.h"
-#include "shoal/wire/message_kind.h"
 
 namespace shoal::console {
 namespace {
@@ -58,36 +54,10 @@ mapping::MissionView viewOfRun(const std::string& dir) {
   return view;
 }
 
-Recording viewOfLog(const std::string& path, const matching::MatcherOptions& matcher) {
-  std::optional<fusion_node::MissionState> state;
-  comms::Stats refused;
-  Recording recording;
-  // Two passes: the first heartbeat says which mission this is, then every message of it counts.
-  comms::LogReader scout(path);
-  while (const auto event = scout.next()) {
-    const auto header = wire::peek(event->packet.bytes);
-    if (!header || header->kind != wire::MessageKind::kHeartbeat) continue;
-    state.emplace(header->mission, matcher);
-    break;
-  }
-  if (!state) throw std::runtime_error(path + " holds no heartbeat of a mission; is it an LCM log?");
-  comms::LogReader log(path);
-  while (const auto event = log.next()) {
-    state->hear(event->packet, refused);
-    ++recording.messages;
-  }
-  for (const auto& [reason, count] : refused.rejected) recording.refused += static_cast<int64_t>(count);
-  recording.messages -= recording.refused;
-  recording.refused += static_cast<int64_t>(log.counts().damaged + log.counts().large);
-  state->refreshMap();
-  recording.view = state->view();
-  return recording;
-}
-
 mapping::MissionView viewOf(const Where& where) {
   if (!where.node.empty()) return viewOfNode(where.node);
   if (!where.run.empty()) return viewOfRun(where.run);
-  return viewOfLog(where.log, where.matcher).view;
+  return readRecording(where.log, where.matcher).state.view();
 }
 
 Json ask(const Where& where, const Json& question) {

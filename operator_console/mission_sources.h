@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstdint>
 #include <string>
 
 #include <nlohmann/json_fwd.hpp>
@@ -21,18 +20,8 @@ struct Where {
 /// A finished run, from its files. @throws std::runtime_error naming the file that is missing or broken.
 mapping::MissionView viewOfRun(const std::string& dir);
 
-/// What a recording alone tells: the state rebuilt from its messages, and fused. A recording is untrusted
-/// input: damage is skipped and counted.
-struct Recording {
-  mapping::MissionView view;
-  int64_t messages = 0;  ///< of the mission, understood
-  int64_t refused = 0;   ///< messages and stretches of the file that were not
-};
-/// @throws std::runtime_error when the file cannot be read or holds no heartbeat of any mission.
-Recording viewOfLog(const std::string& path, const matching::MatcherOptions& matcher);
-
 /// The whole map with everything that is known, wherever it is asked of.
-/// @throws std::runtime_error as the above, or when no node answers.
+/// @throws std::runtime_error as viewOfRun() and readRecording(), or when no node answers.
 mapping::MissionView viewOf(const Where& where);
 
 /// Answers {"query": "status" | "labels" | "at", ...} from wherever. A question that a node cannot answer

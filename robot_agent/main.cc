@@ -10,6 +10,7 @@
 #include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
 
+#include "fusion_node/link.h"
 #include "fusion_node/process.h"
 #include "robot_agent/agent.h"
 #include "robot_agent/camera_stream.h"
@@ -26,7 +27,7 @@ using namespace shoal;  // NOLINT: a main file
 struct Flags {
   std::string robot = "R00", source, url = comms::kDefaultUrl, rate = "1", mission = "shoal",
               log_level = "info";
-  std::string sigma = "auto", checkpoint, camera, source_url;
+  std::string sigma = "auto", link = "clean", checkpoint, camera, source_url;
   double source_timeout_s = 0;
   int64_t source_start_us = -1;
   bool period_given = false;
@@ -114,6 +115,8 @@ int run(Flags flags) {
   options.rate = fusion_node::parseRate(flags.rate);
   options.matcher.sigma = matching::parseSigma(flags.sigma);
 
+  const comms::LinkModel model = comms::readLink(flags.link);
+
   const Source from = isLive(flags) ? openLive(flags, number(*id)) : openPlace(flags, number(*id));
   options.explorer.cell_size_m = from.cell_size_m;
   world::ObservationSource& source = *from.source;
@@ -122,9 +125,13 @@ int run(Flags flags) {
     sayTroubles(source);
     return 0;
   }
-  comms::LcmBus bus(flags.url);
-  spdlog::info("{} flies {}, mission {}, on {}", flags.robot, from.what, options.mission, bus.url());
-  robot_agent::Agent(options, source, bus).run();
+  comms::LcmBus air(flags.url);
+  const auto link =
+      fusion_node::emulated(air, model, {flags.robot, options.mission, options.explorer.seed, options.rate});
+  spdlog::info("{} flies {}, mission {}, on {}, link {}", flags.robot, from.what, options.mission, air.url(),
+               flags.link);
+  robot_agent::Agent(options, source, link ? static_cast<comms::Bus&>(*link) : air).run();
+  fusion_node::logLink(link.get());
   sayTroubles(source);
   return 0;
 }
@@ -155,6 +162,9 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--budget", f.agent.budget, "bytes per second of mission time on the link, 0 = unlimited")
       ->check(CLI::Range(int64_t{0}, int64_t{1} << 31))
+      ->capture_default_str();
+  app.add_option("--link", f.link,
+                 "emulated on the receiving side: clean, mesh, acoustic, satellite or a file")
       ->capture_default_str();
   app.add_option("--profile", f.agent.explorer.profile, "words and hyper-parameters: paper")
       ->capture_default_str();

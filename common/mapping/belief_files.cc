@@ -57,7 +57,7 @@ void readTopics(const Json& json, LocalBelief& belief) {
 
 }  // namespace
 
-void writeBelief(const std::string& folder, const LocalBelief& belief, const world::Grid& grid) {
+std::string beliefCsv(const LocalBelief& belief, const world::Grid& grid) {
   std::string csv = "x_m,y_m,z_m,topic,seen_s,certainty\n";
   for (const BelievedCell& c : belief.cells) {
     const Eigen::Vector3d p = grid.centerOf(c.cell);
@@ -65,7 +65,11 @@ void writeBelief(const std::string& folder, const LocalBelief& belief, const wor
            std::to_string(number(c.topic)) + ',' + fixed(c.seen.seconds(), 3) + ',' + fixed(c.certainty, 4) +
            '\n';
   }
-  writeFileAtomically(folder + "/map.csv", csv);
+  return csv;
+}
+
+void writeBelief(const std::string& folder, const LocalBelief& belief, const world::Grid& grid) {
+  writeFileAtomically(folder + "/map.csv", beliefCsv(belief, grid));
   writeFileAtomically(folder + "/topics.json", topicsJson(belief));
 }
 

@@ -8,7 +8,10 @@
 
 namespace shoal::mapping {
 
-/// Writes `FOLDER/map.csv` (x_m,y_m,z_m,topic,seen_s,certainty) and `FOLDER/topics.json` (exact counts).
+/// The labelled cells of a belief as map.csv: x_m,y_m,z_m,topic,seen_s,certainty; ascending by cell.
+std::string beliefCsv(const LocalBelief& belief, const world::Grid& grid);
+
+/// Writes `FOLDER/map.csv` and `FOLDER/topics.json` (exact counts).
 /// @throws std::runtime_error naming the file that cannot be written.
 void writeBelief(const std::string& folder, const LocalBelief& belief, const world::Grid& grid);
 

@@ -57,7 +57,7 @@ TEST(ConsoleTest, HelpIsNoMistakeAndNothingIs) {
 }
 
 TEST(ConsoleTest, RefusesByNameWhatIsNotBuiltYet) {
-  for (const std::string name : {"replay", "verify", "serve", "spy", "doctor", "area", "why", "name", "link",
+  for (const std::string name : {"serve", "spy", "doctor", "area", "why", "name", "link",
                                  "unlink", "exclude", "undo"}) {
     expectRefusal(name, name + " is not built yet");
     expectRefusal(name + " 7 --what ever", name + " is not built yet");
@@ -87,12 +87,17 @@ TEST(LaunchTest, NamesTheOptionThatIsWrong) {
 
 TEST(LaunchTest, RefusesByNameWhatIsNotBuiltYet) {
   const std::string fly = "launch --world reef:sparse --out " + temporaryFolder() + "/run ";
-  for (const std::string link : {"mesh", "acoustic", "satellite", "my_link.toml"}) {
-    expectRefusal(fly + "--link " + link, "--link " + link);
-  }
   expectRefusal(fly + "--kill-plan plan.toml", "--kill-plan is not built yet");
   expectRefusal(fly + "--matcher incremental", "not built yet");
   expectRefusal(fly + "--profile best", "--profile best is not built yet");
+}
+
+TEST(LaunchTest, NamesTheFieldOfALinkThatIsWrong) {
+  const std::string folder = temporaryFolder();
+  const std::string fly = "launch --world reef:sparse --out " + folder + "/run --link ";
+  std::ofstream(folder + "/bay.json") << "{\"loss\": 2}";
+  expectRefusal(fly + folder + "/bay.json", "bay.json: \"loss\" must lie in [0, 1], got 2");
+  expectRefusal(fly + "string", "string is neither clean, mesh, acoustic or satellite nor a file");
 }
 
 TEST(LaunchTest, KeepsAFinishedMission) {
@@ -108,8 +113,8 @@ TEST(LaunchTest, ReadsFlagsFromMissionToml) {
   std::ofstream(folder + "/mission.toml") << "world = \"reef:sparse\"\nrobots = 999\ncheckpoint = \"x\"\n";
   expectRefusal(launch, "got 999");
   expectRefusal(launch + " --robots 998", "got 998");  // the command line beats the file
-  std::ofstream(folder + "/mission.toml") << "[launch]\nworld = \"reef:sparse\"\nlink = \"mesh\"\n";
-  expectRefusal(launch, "--link mesh is not built yet");
+  std::ofstream(folder + "/mission.toml") << "[launch]\nworld = \"reef:sparse\"\nlink = \"string\"\n";
+  expectRefusal(launch, "string is neither clean, mesh, acoustic or satellite nor a file");
   expectRefusal("launch --config " + folder + "/nothing.toml", "nothing.toml");
 }
 

@@ -125,6 +125,25 @@ class Mission(unittest.TestCase):
                 f"robots/R0{r}/{name}" for r in range(3) for name in ("map.csv", "topics.json", "poses.txt")]:
             self.assertEqual(read(os.path.join(self.a, path)), read(os.path.join(b, path)), path)
 
+    def test_a_bad_link_gives_the_same_bytes(self):
+        link = os.path.join(self.top, "bay.json")
+        with open(link, "w", encoding="utf-8") as file:
+            json.dump({"like": "mesh", "loss": 0.3, "delay_s": 1.5, "reordering": 0.2, "duplication": 0.1,
+                       "partitions": [{"from_s": 2, "until_s": 8, "groups": [["R00"], ["R01", "R02", "OPERATOR"]]}]}, file)
+        out = os.path.join(self.top, "bay")
+        launch(out, "--link", link)
+        for path in ["global_map.csv", "labels.csv"]:
+            self.assertEqual(read(os.path.join(self.a, path)), read(os.path.join(out, path)), path)
+        with open(os.path.join(out, "summary.json"), encoding="utf-8") as file:
+            summary = json.load(file)
+        check_schema("summary", summary)
+        self.assertEqual((summary["link"], summary["converged"]), (link, True))
+        said = re.search(r"the link: (\d+) messages of others, \d+ delivered; lost (\d+), .* parted (\d+)",
+                         read(os.path.join(out, "logs", "OPERATOR.log")).decode())
+        sent, lost, parted = (int(n) for n in said.groups())
+        self.assertGreater(lost, 0.15 * sent)
+        self.assertGreater(parted, 0)
+
     def test_another_seed_gives_another_map(self):
         c = os.path.join(self.top, "c")
         run(CONSOLE, "launch", "--world", "reef:tuning", *SIZE[:-1], "8", "--out", c)
@@ -163,6 +182,48 @@ class Mission(unittest.TestCase):
         run(CONSOLE, "export", "--format", "png", "--out", png, "--run", self.a)
         self.assertEqual(read(png)[:4], b"\x89PNG")
 
+    def test_a_recording_alone_gives_the_same_bytes(self):
+        out = os.path.join(self.top, "replayed")
+        answer = ask("replay", os.path.join(self.a, "mission.lcmlog"), "--out", out)
+        check_schema("replay", answer)
+        self.assertEqual((answer["whole"], answer["lacking"]), (True, []))
+        self.assertEqual(answer["digest"], self.summary["digest"])
+        for path in ["global_map.csv", "labels.csv"]:
+            self.assertEqual(read(os.path.join(out, path)), read(os.path.join(self.a, path)), path)
+        for robot in self.summary["robots"]:  # certainties travel in steps of 1/63
+            told, own = (list(csv.reader(read(os.path.join(top, "robots", robot, "map.csv")).decode().splitlines()))
+                         for top in (out, self.a))
+            self.assertEqual([row[:5] for row in told], [row[:5] for row in own])
+            self.assertTrue(all(abs(float(t[5]) - float(o[5])) < 0.5 / 63 + 1e-4 for t, o in zip(told[1:], own[1:])))
+        self.assertEqual(sorted(answer["files"]), sorted(os.path.relpath(os.path.join(folder, name), out)
+                                                         for folder, _, names in os.walk(out) for name in names))
+
+    def test_a_recording_proves_that_the_mission_was_in_order(self):
+        answer = ask("verify", os.path.join(self.a, "mission.lcmlog"))
+        check_schema("verify", answer)
+        self.assertEqual((answer["good"], answer["wrong"]), (True, []))
+        self.assertEqual([node["node"] for node in answer["nodes"]], ["OPERATOR", "R00", "R01", "R02"])
+        self.assertGreaterEqual(answer["agreed_s"], answer["landed_s"])
+        self.assertEqual(answer["digests"]["nodes"]["OPERATOR"], self.summary["digest"])
+        worst = max(answer["nodes"], key=lambda node: node["worst_window"]["share"])
+        self.assertEqual(worst["node"], self.summary["worst_window"]["robot"])
+        self.assertIn("kept in every window", run(CONSOLE, "verify", os.path.join(self.a, "mission.lcmlog")).stdout)
+
+    def test_half_a_recording_is_not_whole(self):
+        data = read(os.path.join(self.a, "mission.lcmlog"))
+        half = os.path.join(self.top, "half.lcmlog")
+        with open(half, "wb") as file:
+            file.write(data[: len(data) // 3])
+        out = os.path.join(self.top, "half")
+        answer = json.loads(run(CONSOLE, "replay", half, "--out", out, "--json", expect=1).stdout)
+        check_schema("replay", answer)
+        self.assertFalse(answer["whole"])
+        self.assertTrue(all(re.match(r"R0[012]: ", line) for line in answer["lacking"]), answer["lacking"])
+        self.assertTrue(os.path.exists(os.path.join(out, "global_map.csv")))
+        answer = json.loads(run(CONSOLE, "verify", half, "--json", expect=1).stdout)
+        check_schema("verify", answer)
+        self.assertFalse(answer["good"])
+
     def test_a_damaged_recording_is_read_as_far_as_it_goes(self):
         broken = os.path.join(self.top, "broken.lcmlog")
         data = bytearray(read(os.path.join(self.a, "mission.lcmlog")))
@@ -183,12 +244,15 @@ class Mission(unittest.TestCase):
             (2, ["launch", "--world", "reef:tuning", "--out", self.a]),  # holds a finished mission
             (2, ["launch", "--world", "reef:tuning", "--matcher", "shoal", "--out", self.top + "/x"]),
             (2, ["launch", "--world", "reef:tuning", "--profile", "best", "--out", self.top + "/x"]),
-            (2, ["launch", "--world", "reef:tuning", "--link", "mesh", "--out", self.top + "/x"]),
+            (2, ["launch", "--world", "reef:tuning", "--link", "string", "--out", self.top + "/x"]),
             (1, ["evaluate", "--run", self.top, "--world", "reef:tuning"]),
             (1, ["status", "--run", self.top]),
             (1, ["status", "--node", self.top]),
             (2, ["status"]),
-            (2, ["replay", "x"]),
+            (1, ["replay", self.top + "/no.lcmlog", "--out", self.top + "/x"]),
+            (2, ["replay", os.path.join(self.a, "mission.lcmlog")]),
+            (2, ["replay", os.path.join(self.a, "mission.lcmlog"), "--out", self.a]),  # a finished mission
+            (1, ["verify", os.path.join(self.a, "summary.json")]),
         ]
         for code, arguments in cases:
             done = run(CONSOLE, *arguments, expect=code)

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "operator_console/recorded_mission.h"
+
+#include <stdexcept>
+
+#include "shoal/comms/log_reader.h"
+
+namespace shoal::console {
+namespace {
+
+int32_t missionOf(const std::string& path) {
+  comms::LogReader log(path);
+  while (const auto event = log.next()) {
+    const auto header = wire::peek(event->packet.bytes);
+    if (header && header->kind == wire::MessageKind::kHeartbeat) return header->mission;
+  }
+  throw std::runtime_error(path + " holds no heartbeat of a mission; is it an LCM log?");
+}
+
+int64_t total(const comms::Stats& stats) {
+  int64_t refused = 0;
+  for (const auto& [reason, count] : stats.rejected) refused += static_cast<int64_t>(count);
+  return refused;
+}
+
+}  // namespace
+
+RecordedMission readRecording(const std::string& path, const matching::MatcherOptions& matcher,
+                              const OnMessage& on_message) {
+  const int32_t mission = missionOf(path);
+  RecordedMission recorded{mission, {mission, matcher}, 0, 0};
+  comms::Stats refused;
+  comms::LogReader log(path);
+  while (const auto event = log.next()) {
+    if (!event->packet.channel.starts_with("SHOAL_")) continue;  // cameras, LCM's own self test
+    recorded.state.hear(event->packet, refused);
+    if (const int64_t now_refused = total(refused); now_refused != recorded.refused) {
+      recorded.refused = now_refused;
+      continue;
+    }
+    ++recorded.messages;
+    if (!on_message) continue;
+    on_message(*comms::parseChannel(event->packet.channel), *wire::peek(event->packet.bytes), event->packet,
+               recorded.state);
+  }
+  recorded.refused += static_cast<int64_t>(log.counts().damaged + log.counts().large);
+  recorded.state.refreshMap();
+  return recorded;
+}
+
+}  // namespace shoal::console

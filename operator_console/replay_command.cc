@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "fusion_node/process.h"
+#include "operator_console/command.h"
+#include "operator_console/replay.h"
+
+namespace shoal::console {
+namespace {
+
+struct Flags {
+  std::string log, out, sigma = "0.75", similarity;
+  matching::MatcherOptions matcher;
+  bool json = false;
+};
+
+int run(Flags flags) {
+  flags.matcher.sigma = fusion_node::parseSigma(flags.sigma);
+  flags.matcher.similarity =
+      flags.similarity.empty() ? matching::usualSimilarity(flags.matcher.matcher) : flags.similarity;
+  const Replay result = replay(flags.log, flags.out, flags.matcher);
+  std::cout << (flags.json ? result.json().dump(2) + "\n" : result.text());
+  return result.isWhole() ? 0 : 1;
+}
+
+}  // namespace
+
+void addReplayCommand(CLI::App& app, Action& chosen) {
+  CLI::App* command = app.add_subcommand("replay", "rebuild a mission's map from its recording alone");
+  const auto flags = std::make_shared<Flags>();
+  command->add_option("log", flags->log, "a recording made by lcm-logger")->required();
+  command->add_option("--out", flags->out, "folder for the map's files")->required();
+  command->add_option("--matcher", flags->matcher.matcher, "id, hungarian or clear: as the mission's")
+      ->capture_default_str();
+  command->add_option("--similarity", flags->similarity,
+                      "cosine, overlap, l1 or l2 (default: l2 for hungarian, else cosine)");
+  command->add_option("--sigma", flags->sigma, "least similarity of a match, in (0, 1]")
+      ->capture_default_str();
+  command->add_flag("--json", flags->json, "answer in JSON");
+  command->callback([&chosen, flags] { chosen = [flags] { return run(*flags); }; });
+}
+
+}  // namespace shoal::console

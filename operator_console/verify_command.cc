@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "operator_console/command.h"
+#include "operator_console/verify.h"
+
+namespace shoal::console {
+
+void addVerifyCommand(CLI::App& app, Action& chosen) {
+  struct Flags {
+    std::string log;
+    bool json = false;
+  };
+  CLI::App* command =
+      app.add_subcommand("verify", "prove from a recording: budget kept, gaps repaired, all nodes agree");
+  const auto flags = std::make_shared<Flags>();
+  command->add_option("log", flags->log, "a recording made by lcm-logger")->required();
+  command->add_flag("--json", flags->json, "answer in JSON");
+  command->callback([&chosen, flags] {
+    chosen = [flags] {
+      const Verification result = verify(flags->log);
+      std::cout << (flags->json ? result.json().dump(2) + "\n" : result.text());
+      return result.wrong().empty() ? 0 : 1;
+    };
+  });
+}
+
+}  // namespace shoal::console
