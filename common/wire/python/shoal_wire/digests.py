@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The hashes by which nodes know that they hold the same."""
+import struct
+
+from .layout import MASK, STEPS
+
+
+def mix(x):
+    x = (x + 0x9E3779B97F4A7C15) & MASK
+    x = (x ^ x >> 30) * 0xBF58476D1CE4E5B9 & MASK
+    x = (x ^ x >> 27) * 0x94D049BB133111EB & MASK
+    return x ^ x >> 31
+
+
+def hash_of(values, start=0):
+    """The hash that all digests are made of: folds integers, in order, into 64 bits."""
+    for value in values:
+        start = mix(start ^ mix(value & MASK))
+    return start
+
+
+def content_hash(m):
+    """The hash of a piece: a decoded message of kind TOPICS, BRICK or CERTAINTY."""
+    number = {"TOPICS": 1, "BRICK": 2, "CERTAINTY": 3}[m["kind"]]
+    index = (m["topic"], 0, 0) if number == 1 else (m["brick_x"], m["brick_y"], m["brick_z"])
+    values = [m["robot"], number, *index, m["epoch"], m["observation"], m["part"], m["num_parts"]]
+    if number == 1:
+        values += [m["created_us"], m["weight"], len(m["group_sizes"]), *m["group_sizes"]]
+        for entry in m["words"]:
+            values += entry
+    else:
+        for cell, *rest in m["cells" if number == 2 else "certainties"]:
+            values += [*cell, *rest]
+    return hash_of(values)
+
+
+def map_digest(cells, correspondences):
+    """The digest of a fused map: cells {(x, y, z): (label, robot, seen_us, steps)}, [(robot, topic, label)]."""
+    bits = [struct.unpack(">i", struct.pack(">f", steps / STEPS))[0] for steps in range(STEPS + 1)]
+    digest = 0
+    for cell in sorted(cells):
+        label, robot, seen_us, steps = cells[cell]
+        digest = hash_of((*cell, label, robot, seen_us, bits[steps]), digest)
+    for entry in correspondences:
+        digest = hash_of(entry, digest)
+    return digest

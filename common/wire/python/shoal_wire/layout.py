@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The types of messages: their fields as in lcmtypes/*.lcm, their limits, and LCM's fingerprints."""
+import struct
+
+MAX_MESSAGE = 1391
+MAX_TIME = 2**62 - 1
+MAX_ROBOT = MAX_TOPIC = 9999
+MAX_LABEL = 99999999
+MAX_VOCABULARY = 2**20
+FORMAT = 1
+STEPS = 63  # certainties are in steps of 1/63
+MASK = 2**64 - 1  # hashes, digests and fingerprints are 64 bits
+
+# Channel kind -> the fields between `format` and `checksum` as (name, struct code).
+_PIECE = [("part", "B"), ("num_parts", "B"), ("robot", "h"), ("epoch", "i"), ("observation", "i")]
+_BRICK = [("brick_x", "i"), ("brick_y", "i"), ("brick_z", "i")]
+_CHUNK = [("chunk", "h"), ("num_chunks", "h")]
+FIELDS = {
+    "HEARTBEAT": [
+        ("phase", "B"), ("epoch", "i"), ("observation", "i"), ("num_observations", "i"), ("num_topics", "h"),
+        ("num_cells", "i"), ("own_digest", "q"), ("state_digest", "q"), ("map_digest", "q"), ("map_of_state", "q"),
+        ("vocabulary", "q"), ("cell_size_m", "d"), ("host", "i"), ("pid", "i"), ("x_m", "f"), ("y_m", "f"),
+        ("z_m", "f"), ("bytes_sent", "q"), ("budget", "i"), ("queue_bytes", "i"), ("rejected", "i"),
+        ("conflicts", "i"), ("ms_per_frame", "f")],
+    "TOPICS": _PIECE + [("topic", "h"), ("num_words", "i")],
+    "BRICK": _PIECE + _BRICK + [("cells", "h")],
+    "CERTAINTY": _PIECE + _BRICK + [("certainties", "h")],
+    "MATCHES": [("map_digest", "q")] + _CHUNK + [("correspondences", "i")],
+    "LABELS": [("map_digest", "q")] + _CHUNK + [("labels", "h")],
+    "MAP": [("map_digest", "q"), ("chunk", "i"), ("num_chunks", "i")] + _BRICK + [("fused_cells", "h")],
+}
+LAYOUT = {kind: struct.Struct(">qqiB" + "".join(code for _, code in fields) + "Hi") for kind, fields in FIELDS.items()}
+_LCM_TYPE = {"q": "int64_t", "i": "int32_t", "h": "int16_t", "B": "byte", "d": "double", "f": "float"}
+TRAFFIC_CLASSES = ["heartbeat", "matches", "topics", "bricks", "certainty", "local"]
+PHASES = ["flying", "landed", "leaving", "node"]
+UNSIGNED = {"own_digest", "state_digest", "map_digest", "map_of_state", "vocabulary"}
+
+
+def fingerprint(members):
+    """LCM's fingerprint of a type, from its members as (name, type, size member of a one-dimensional array or None)."""
+    value = 0x12345678
+
+    def update(byte):
+        nonlocal value
+        signed = value - 2**64 if value >> 63 else value
+        value = ((value << 8 ^ signed >> 55) + byte) & MASK
+
+    def update_text(text):
+        update(len(text))
+        for letter in text.encode():
+            update(letter)
+
+    for name, lcm_type, size in members:
+        update_text(name)
+        update_text(lcm_type)
+        update(0 if size is None else 1)
+        if size is not None:
+            update(1)  # sized by a member
+            update_text(size)
+    return (value << 1 | value >> 63) & MASK
+
+
+def members(kind):
+    """The members of a type as fingerprint() takes them."""
+    front = [("utime", "int64_t", None), ("mission", "int32_t", None), ("format", "byte", None)]
+    own = [(name, _LCM_TYPE[code], None) for name, code in FIELDS[kind]]
+    return front + own + [("checksum", "int16_t", None), ("n", "int32_t", None), ("payload", "byte", "n")]
+
+
+FINGERPRINTS = {kind: fingerprint(members(kind)) for kind in FIELDS}
+KINDS = {value: kind for kind, value in FINGERPRINTS.items()}

@@ -1,0 +1,236 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The state that messages add up to, and the fused map."""
+import collections
+
+from .digests import content_hash, hash_of, map_digest
+from .errors import BadFile, BadMessage, require
+from .layout import LAYOUT, MASK
+from .log import Log
+from .message import decode, parse_channel, peek, robot_name, unframe
+
+
+class _Lists:
+    """Chunks of what one node publishes about its maps, by kind: the maps it named last, and what came of them."""
+
+    def __init__(self):
+        self.by_digest = collections.OrderedDict()  # digest -> {chunk: raw}, the latest heard last
+
+    def hear(self, m, raw):
+        chunks = self.by_digest.setdefault(m["map_digest"], {})
+        chunks.setdefault(m["chunk"], raw)
+        self.by_digest.move_to_end(m["map_digest"])
+        if len(chunks) == m["num_chunks"]:  # whole: what is older is of no use any more
+            while next(iter(self.by_digest)) != m["map_digest"]:
+                self.by_digest.popitem(last=False)
+
+    def whole(self, digest):
+        """The decoded chunks of what belongs to a map, in order; None unless all have come."""
+        try:
+            chunks = [decode(raw) for _, raw in sorted(self.by_digest.get(digest, {}).items())]
+        except BadMessage:
+            return None
+        whole = chunks and len(chunks) == chunks[0]["num_chunks"]
+        return chunks if whole else None
+
+    def newest(self):
+        """The digest of the map of which all chunks have come, and one of them last; None when there is none."""
+        return next((digest for digest in reversed(self.by_digest) if self.whole(digest) is not None), None)
+
+
+class Mission:
+    """What the messages of one mission add up to. What is bad is counted by reason in `refused` and left out."""
+
+    def __init__(self, mission):
+        self.mission = mission
+        self.refused = collections.Counter()
+        self.heard = 0
+        self.heartbeats = {}  # node -> the latest
+        self._versions = {}   # (robot, kind, index) -> {(epoch, observation): [raw, as they came]}
+        self._seen = set()
+        self._usable = None
+        self._digests = {}
+        self._lists = {}      # (node, kind) -> _Lists
+
+    def hear(self, channel, data):
+        """Takes in a message that came on a channel."""
+        try:
+            known = parse_channel(channel)
+            require(known, channel, "channel")
+            node, channel_kind = known
+            kind, _, mission = peek(data)
+            require(kind == channel_kind, f"{kind} on {channel}", "wrong type")
+            require(mission == self.mission, str(mission), "other mission")
+            m, _ = unframe(data)
+            if kind == "HEARTBEAT":
+                m = decode(data)
+                if m["utime"] >= self.heartbeats.get(node, m)["utime"]:
+                    self.heartbeats[node] = m
+            elif kind in ("TOPICS", "BRICK", "CERTAINTY"):
+                require(robot_name(m["robot"]) == node, node, "wrong sender")
+                self._hear_piece(m, data)
+            else:
+                self._lists.setdefault((node, kind), _Lists()).hear(m, data)
+            self.heard += 1
+        except BadMessage as error:
+            self.refused[error.reason] += 1
+
+    def _hear_piece(self, m, data):
+        content = (data[:8], data[16:LAYOUT[m["kind"]].size - 6], data[LAYOUT[m["kind"]].size:])
+        if content in self._seen:  # all but when it was sent
+            return
+        self._seen.add(content)
+        index = m["topic"] if m["kind"] == "TOPICS" else (m["brick_x"], m["brick_y"], m["brick_z"])
+        versions = self._versions.setdefault((m["robot"], m["kind"], index), {})
+        versions.setdefault((m["epoch"], m["observation"]), []).append(data)
+        self._usable = None
+        self._digests = {}
+
+    def pieces(self):
+        """The state: for every topic and brick the parts of the newest version whose part 0 has come, ascending.
+
+        [(robot, kind, index, {part: decoded message})]
+        """
+        if self._usable is None:
+            self._usable = []
+            for (robot, kind, index), versions in sorted(self._versions.items(), key=lambda item: item[0]):
+                for version in sorted(versions, reverse=True):
+                    parts = self._parts(versions[version])
+                    if 0 in parts:
+                        self._usable.append((robot, kind, index, dict(sorted(parts.items()))))
+                        break
+        return self._usable
+
+    def _parts(self, raw):
+        """The parts of one version, decoded; what is bad among `raw` is counted and forgotten."""
+        parts, good = {}, []
+        for data in raw:
+            try:
+                m = decode(data)
+                alike = all(m["num_parts"] == other["num_parts"] for other in parts.values())
+                require(alike and m["part"] not in parts, "equal versions, other content", "conflict")
+                parts[m["part"]] = m
+                good.append(data)
+            except BadMessage as error:
+                self.refused[error.reason] += 1
+        raw[:] = good
+        return parts
+
+    @property
+    def cell_size_m(self):
+        """Edge of a cell as the first robot by name says it, metres; 1 before any did."""
+        said = [h["cell_size_m"] for _, h in sorted(self.heartbeats.items()) if h["phase"] != "node"]
+        return said[0] if said else 1.0
+
+    def robots(self):
+        """Names of the robots of which something is known."""
+        return sorted({robot_name(robot) for robot, *_ in self.pieces()}, key=lambda name: int(name[1:]))
+
+    def _of(self, robot, kind):
+        return [parts for number, k, _, parts in self.pieces() if k == kind and robot_name(number) == robot]
+
+    def cells(self, robot):
+        """A robot's own map: {(x, y, z): (topic, seen_us, certainty steps)}; 0 steps where none was heard."""
+        steps = {cell: level for parts in self._of(robot, "CERTAINTY") for m in parts.values()
+                 for cell, level in m["certainties"]}
+        cells = {}
+        for parts in self._of(robot, "BRICK"):
+            for m in parts.values():
+                for cell, topic, seen_us in m["cells"]:
+                    if cell not in cells or cells[cell][1] < seen_us:
+                        cells[cell] = (topic, seen_us, steps.get(cell, 0))
+        return cells
+
+    def topics(self, robot):
+        """{id: {"created_us", "weight", "group_sizes", "words": {word: count}}}, retired topics left out."""
+        topics = {}
+        for parts in self._of(robot, "TOPICS"):
+            first = parts[0]
+            if first["weight"] == 0:
+                continue
+            words = {}
+            for m in parts.values():
+                if m["group_sizes"] == first["group_sizes"]:
+                    for word, count in m["words"]:
+                        words[word] = min(count, words.get(word, count))
+            topics[first["topic"]] = {"created_us": first["created_us"], "weight": first["weight"],
+                                      "group_sizes": first["group_sizes"], "words": dict(sorted(words.items()))}
+        return dict(sorted(topics.items()))
+
+    def digest(self, robot):
+        """The digest of what is held of a robot; equal to own_digest of its heartbeat when that is all it has."""
+        if not self._digests:
+            for number, _, _, parts in self.pieces():
+                own = sum(content_hash(m) for m in parts.values())
+                self._digests[robot_name(number)] = self._digests.get(robot_name(number), 0) + own & MASK
+        return self._digests.get(robot, 0)
+
+    def state_digest(self):
+        """The digest of all that is held."""
+        digest = 0
+        for robot in self.robots():
+            own = self.digest(robot)
+            if own:
+                digest = hash_of((int(robot[1:]), own), digest)
+        return digest
+
+    def nodes_with_maps(self):
+        return sorted({node for node, _ in self._lists})
+
+    def map(self, node=None):
+        """The newest fused map that a node published; None when there is none.
+
+        node: which one's; OPERATOR's, else the first by name, when not told.
+        Returns {"node", "digest", "source", "cells": {(x, y, z): (label, robot, seen_us, steps)},
+        "correspondences": [(robot, topic, label)], "labels": [row]}. `source` is "MAP" when the node published the
+        cells, "MATCHES" when they are put together here from the robots' maps and the node's correspondences,
+        "MATCHES of another state" when these do not add up to the node's digest.
+        """
+        if node is None:
+            nodes = self.nodes_with_maps()
+            node = "OPERATOR" if "OPERATOR" in nodes else nodes[0] if nodes else None
+        matches, drawn, named = (self._lists.get((node, kind), _Lists()) for kind in ("MATCHES", "MAP", "LABELS"))
+        digest = matches.newest() if matches.newest() is not None else drawn.newest()
+        if digest is None:
+            return None
+        pairs = [pair for m in matches.whole(digest) or [] for pair in m["correspondences"]]
+        chunks = drawn.whole(digest)
+        if chunks:
+            cells, source = {c[0]: c[1:] for m in chunks for c in m["fused_cells"]}, "MAP"
+        else:
+            cells = self._fuse(pairs)
+            source = "MATCHES" if map_digest(cells, pairs) == digest else "MATCHES of another state"
+        return {"node": node, "digest": digest, "source": source, "cells": cells, "correspondences": pairs,
+                "labels": [row for m in named.whole(digest) or [] for row in m["labels"]]}
+
+    def _fuse(self, correspondences):
+        """A cell shows what the robot that saw it last says; of two at the same time, the higher number."""
+        label_of = {(robot, topic): label for robot, topic, label in correspondences}
+        cells = {}
+        for name in self.robots():
+            robot = int(name[1:])
+            for cell, (topic, seen_us, steps) in self.cells(name).items():
+                if cell not in cells or (cells[cell][2], cells[cell][1]) < (seen_us, robot):
+                    cells[cell] = (label_of.get((robot, topic), robot * 10000 + topic), robot, seen_us, steps)
+        return cells
+
+
+def read_log(path, mission=None):
+    """The Mission that an LCM log holds: `mission`, else that of its first heartbeat. BadFile when there is none."""
+    log = Log(path)
+    if mission is None:
+        for _, _, data in log:
+            try:
+                kind, _, said = peek(data)
+            except BadMessage:
+                continue
+            if kind == "HEARTBEAT":
+                mission = said
+                break
+        if mission is None:
+            raise BadFile(f"{path} holds no heartbeat of a mission; is it an LCM log?")
+    state = Mission(mission)
+    for _, channel, data in log:
+        state.hear(channel, data)
+    if log.damaged:
+        state.refused["damaged log"] += log.damaged
+    return state

@@ -1,0 +1,175 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Payloads, one function a type. Each takes the message and adds to it, or puts lists in place of counts."""
+import math
+import re
+
+from . import cells
+from .errors import BadMessage, require
+from .layout import MAX_LABEL, MAX_ROBOT, MAX_TIME, MAX_TOPIC, MAX_VOCABULARY, PHASES, TRAFFIC_CLASSES
+from .range_coder import Bits, Models
+
+
+def _read_heartbeat(m, payload):
+    at = 0
+
+    def varint():
+        nonlocal at
+        value = 0
+        for shift in range(0, 70, 7):
+            require(at < len(payload), "the payload ends early", "bad payload")
+            byte = payload[at]
+            at += 1
+            value |= (byte & 127) << shift
+            if byte < 128:
+                require(byte or not shift, "a varint could be shorter", "not canonical")
+                require(value < 2**64, "a varint above 64 bits", "bad payload")
+                return value
+        raise BadMessage("bad payload", "a varint above 64 bits")
+
+    m["class_bytes"] = {name: varint() for name in TRAFFIC_CLASSES}
+    robots, follows = [], 0
+    for _ in range(varint()):
+        first = follows + varint()
+        follows = first + varint() + 1
+        require(follows <= MAX_ROBOT + 1 and len(robots) + follows - first <= 256, "roster", "bad payload")
+        robots += range(first, follows)
+    require(len(payload) - at >= 4 * len(robots), "the payload ends early", "bad payload")
+    require(len(payload) - at == 4 * len(robots), "bytes after the end of the payload", "not canonical")
+    m["roster"] = [(robot, int.from_bytes(payload[at + 4 * i:at + 4 * i + 4], "big")) for i, robot in enumerate(robots)]
+    require(all(count < 2**63 for count in m["class_bytes"].values()), "class_bytes")
+    require(m["phase"] < len(PHASES) and m["epoch"] >= 0 and m["observation"] >= -1, "phase, epoch or observation")
+    require(0 <= m["num_topics"] <= MAX_TOPIC + 1, "num_topics")
+    for name in ("num_observations", "num_cells", "pid", "bytes_sent", "budget", "queue_bytes", "rejected",
+                 "conflicts"):
+        require(m[name] >= 0, name)
+    for name in ("x_m", "y_m", "z_m", "ms_per_frame", "cell_size_m"):
+        require(math.isfinite(m[name]), name)
+    require(m["ms_per_frame"] >= 0 and m["cell_size_m"] > 0, "ms_per_frame or cell_size_m")
+    m["phase"] = PHASES[m["phase"]]
+
+
+def _read_topics(m, payload):
+    require(0 <= m["topic"] <= MAX_TOPIC, "topic")
+    require(0 <= m["num_words"] <= 65536, "num_words")
+    bits = Bits(payload)
+    m["created_us"], m["weight"] = bits.wide(), bits.wide()
+    sizes, ends = [], []
+    for _ in range(bits.direct(6) + 1):
+        sizes.append(bits.wide())
+        ends.append(sum(sizes))
+        require(sizes[-1] > 0 and ends[-1] <= MAX_VOCABULARY, "sizes of word groups", "bad payload")
+    require(m["num_words"] <= ends[-1], "more words than the vocabulary has", "bad payload")
+    gaps = [Models() for _ in range(4)]
+    counts = [[Models() for _ in range(4)] for _ in range(4)]
+    words, follows, last, group = [], 0, 0, 0
+
+    def group_of(word):
+        nonlocal group
+        require(word < ends[-1], "a word outside the vocabulary", "bad payload")
+        while word >= ends[group]:
+            group += 1
+        return min(group, 3)
+
+    for _ in range(m["num_words"]):
+        word = follows + bits.small(gaps[group_of(follows)])
+        count = bits.small(counts[group_of(word)][last])
+        require(count < 2**31 - 1, "a count", "bad payload")
+        words.append((word, count + 1))
+        follows, last = word + 1, min(count.bit_length(), 3)
+    bits.end()
+    require(m["created_us"] <= MAX_TIME and m["weight"] <= MAX_TIME, "created or weight")
+    require(m["weight"] or not words, "a retired topic has no words")
+    m["group_sizes"], m["words"] = sizes, words
+
+
+def _read_brick(m, payload):
+    bits = Bits(payload)
+    there = cells.occupancy(bits, m["cells"])
+    near = cells.neighbours(there)
+    topics = cells.column(bits, near, MAX_TOPIC)
+    times = cells.times(bits, near)
+    bits.end()
+    m["cells"] = list(zip(cells.in_world(there, m), topics, times))
+
+
+def _read_certainty(m, payload):
+    bits = Bits(payload)
+    there = cells.occupancy(bits, m["certainties"])
+    levels = cells.levels(bits, cells.neighbours(there))
+    bits.end()
+    m["certainties"] = list(zip(cells.in_world(there, m), levels))
+
+
+def _read_matches(m, payload):
+    count, entries = m["correspondences"], []
+    require(0 <= count <= 16384, "correspondences")
+    require(count or not payload, "bytes after the end of the payload", "not canonical")
+    if count:
+        bits = Bits(payload)
+        labels = cells.palette(bits, MAX_LABEL, count)
+        width = (len(labels) - 1).bit_length()
+        robot_models, topic_models, label_models = Models(), Models(), Models()
+        robot, follows = 0, 0
+        for _ in range(count):
+            skip = bits.small(robot_models)
+            if skip:
+                robot, follows = robot + skip, 0
+            topic = follows + bits.small(topic_models)
+            which = bits.tree(label_models, width)
+            require(robot <= MAX_ROBOT and topic <= MAX_TOPIC and which < len(labels), "an entry", "bad payload")
+            entries.append((robot, topic, labels[which]))
+            follows = topic + 1
+        bits.end()
+    m["correspondences"] = entries
+
+
+def _read_labels(m, payload):
+    require(0 <= m["labels"] <= 4096, "labels")
+    bits, rows, follows = Bits(payload), [], 0
+    label_models, cell_models, count_models, robot_models, letters = (Models() for _ in range(5))
+    for _ in range(m["labels"]):
+        label = follows + bits.long(label_models)
+        follows = label + 1
+        cells, first_seen = bits.long(cell_models), bits.wide()
+        count, robots, next_robot = bits.small(count_models), [], 0
+        require(label <= MAX_LABEL and cells <= MAX_TIME, "label or cells", "bad payload")
+        require(first_seen <= MAX_TIME and count <= 256, "first seen or robots", "bad payload")
+        for _ in range(count):
+            robots.append(next_robot + bits.small(robot_models))
+            next_robot = robots[-1] + 1
+            require(next_robot <= MAX_ROBOT + 1, "a robot", "bad payload")
+        length = bits.direct(7)
+        require(length <= 64, "length of a name", "bad payload")
+        raw = bytes(bits.tree(letters, 8) for _ in range(length))
+        try:
+            name = raw.decode()
+        except UnicodeDecodeError:
+            raise BadMessage("field out of range", "a name is not UTF-8") from None
+        require(not re.search("[\0-\x1f\x7f-\x9f]", name), "a name has control characters")
+        rows.append({"label": label, "name": name, "cells": cells, "robots": robots, "first_seen_us": first_seen})
+    bits.end()
+    m["labels"] = rows
+
+
+def _read_map(m, payload):
+    count = m["fused_cells"]
+    require(0 <= count <= 4096, "fused_cells")
+    if not count:
+        alone = m["num_chunks"] == 1 and not any(m["brick_" + axis] for axis in "xyz")
+        require(alone, "a chunk is empty, and not the only one")
+        require(not payload, "bytes after the end of the payload", "not canonical")
+        m["fused_cells"] = []
+        return
+    bits = Bits(payload)
+    there = cells.occupancy(bits, count)
+    near = cells.neighbours(there)
+    labels = cells.column(bits, near, MAX_LABEL)
+    robots = cells.column(bits, near, MAX_ROBOT)
+    times = cells.times(bits, near)
+    levels = cells.levels(bits, near)
+    bits.end()
+    m["fused_cells"] = list(zip(cells.in_world(there, m), labels, robots, times, levels))
+
+
+READ = {"HEARTBEAT": _read_heartbeat, "TOPICS": _read_topics, "BRICK": _read_brick, "CERTAINTY": _read_certainty,
+         "MATCHES": _read_matches, "LABELS": _read_labels, "MAP": _read_map}
