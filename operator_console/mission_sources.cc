@@ -1,17 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "operator_console/mission_sources.h"
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
+#include <utility>
+
+#include <spdlog/spdlog.h>
 
 #include "fusion_node/mission_state.h"
 #include "fusion_node/query_server.h"
 #include "shoal/comms/log_reader.h"
+#include "shoal/eval/evaluation.h"
 #include "shoal/mapping/atomic_file.h"
+#include "shoal/mapping/belief_pieces.h"
+#include "shoal/mapping/fusion.h"
 #include "shoal/mapping/map_files.h"
+#include "shoal/mapping/questions.h"
 #include "shoal/wire/message_kind.h"
 
 namespace shoal::console {
@@ -36,52 +44,133 @@ mapping::MissionView viewOfNode(const std::string& state_dir) {
   return view;
 }
 
-}  // namespace
-
-mapping::MissionView viewOfRun(const std::string& dir) {
+Json readSummary(const std::string& dir) {
   const std::string path = dir + "/summary.json";
   if (!std::filesystem::exists(path)) {
     throw std::runtime_error(dir + " is not a finished run: it has no summary.json");
   }
+  try {
+    return Json::parse(mapping::readFile(path));
+  } catch (const Json::exception& error) {
+    throw std::runtime_error(path + ": " + error.what());
+  }
+}
+
+}  // namespace
+
+mapping::MissionView viewOfRun(const std::string& dir) {
+  const Json summary = readSummary(dir);
   mapping::MissionView view;
   try {
-    const Json summary = Json::parse(mapping::readFile(path));
     view.mission = summary.at("mission_id");
     view.cell_size_m = summary.at("cell_size_m");
     view.state_digest = digestFrom(summary.at("digest").at("state"));
     view.map_digest = digestFrom(summary.at("digest").at("map"));
     for (const Json& node : summary.at("nodes")) view.nodes.push_back(mapping::nodeFromJson(node));
   } catch (const Json::exception& error) {
-    throw std::runtime_error(path + ": " + error.what());
+    throw std::runtime_error(dir + "/summary.json: " + error.what());
   }
   view.map = mapping::readGlobalMap(dir, world::Grid(view.cell_size_m));
   return view;
 }
 
-Recording viewOfLog(const std::string& path, const matching::MatcherOptions& matcher) {
-  std::optional<fusion_node::MissionState> state;
-  comms::Stats refused;
-  Recording recording;
+namespace {
+
+// What a recording says, up to a mission time.
+struct Reading {
+  fusion_node::MissionState state;
+  int64_t messages = 0, refused = 0;  // of the mission and understood; not
+};
+
+Reading readLog(const std::string& path, const matching::MatcherOptions& matcher,
+                std::optional<world::Timestamp> until) {
+  std::optional<Reading> reading;
   // Two passes: the first heartbeat says which mission this is, then every message of it counts.
   comms::LogReader scout(path);
   while (const auto event = scout.next()) {
     const auto header = wire::peek(event->packet.bytes);
     if (!header || header->kind != wire::MessageKind::kHeartbeat) continue;
-    state.emplace(header->mission, matcher);
+    reading.emplace(Reading{.state = fusion_node::MissionState(header->mission, matcher)});
     break;
   }
-  if (!state) throw std::runtime_error(path + " holds no heartbeat of a mission; is it an LCM log?");
+  if (!reading) throw std::runtime_error(path + " holds no heartbeat of a mission; is it an LCM log?");
+  comms::Stats refused;
   comms::LogReader log(path);
   while (const auto event = log.next()) {
-    state->hear(event->packet, refused);
-    ++recording.messages;
+    const auto header = wire::peek(event->packet.bytes);
+    if (until && header && header->time > *until) continue;
+    reading->state.hear(event->packet, refused);
+    ++reading->messages;
   }
-  for (const auto& [reason, count] : refused.rejected) recording.refused += static_cast<int64_t>(count);
-  recording.messages -= recording.refused;
-  recording.refused += static_cast<int64_t>(log.counts().damaged + log.counts().large);
-  state->refreshMap();
-  recording.view = state->view();
-  return recording;
+  for (const auto& [reason, count] : refused.rejected) reading->refused += static_cast<int64_t>(count);
+  reading->messages -= reading->refused;
+  reading->refused += static_cast<int64_t>(log.counts().damaged + log.counts().large);
+  reading->state.refreshMap();
+  return std::move(*reading);
+}
+
+// Which matcher a run's map was made with, when its summary tells.
+matching::MatcherOptions matcherOfRun(const Json& summary, const matching::MatcherOptions& otherwise) {
+  const auto said = summary.find("matching");
+  if (said == summary.end()) return otherwise;
+  matching::MatcherOptions options;
+  said->at("matcher").get_to(options.matcher);
+  said->at("similarity").get_to(options.similarity);
+  said->at("sigma").get_to(options.sigma);
+  return options;
+}
+
+bool showSameLabels(const mapping::GlobalMap& a, const mapping::GlobalMap& b) {
+  return std::ranges::equal(a.cells, b.cells, [](const mapping::GlobalCell& x, const mapping::GlobalCell& y) {
+    return x.cell == y.cell && x.label == y.label && x.robot == y.robot;
+  });
+}
+
+Json askRun(const Where& where, const Json& question) {
+  mapping::MissionView view = viewOfRun(where.run);
+  const Json summary = readSummary(where.run);
+  mapping::Witness witness{.view = view, .beliefs = {}, .matcher = matcherOfRun(summary, where.matcher)};
+  std::optional<mapping::BeliefStore> store;  // from the robots' own files, when it is needed
+  witness.beliefs = [&]() -> const mapping::BeliefStore& {
+    if (store) return *store;
+    store.emplace();
+    for (const mapping::LocalBelief& belief :
+         eval::readRun(where.run, world::Grid(view.cell_size_m)).robots) {
+      for (const mapping::Piece& piece : mapping::wholePieces(belief)) store->apply(piece);
+    }
+    const mapping::GlobalMap again = mapping::fuse(*store, witness.matcher);
+    if (!showSameLabels(again, view.map)) {
+      spdlog::warn("{}: the robots' own files, matched with {}, do not give the labels of global_map.csv",
+                   where.run, witness.matcher.matcher);
+    }
+    view.map.correspondences = again.correspondences;  // the files of a map do not hold them
+    return *store;
+  };
+  return mapping::answer(witness, question);
+}
+
+}  // namespace
+
+Recording viewOfLog(const std::string& path, const matching::MatcherOptions& matcher) {
+  const Reading reading = readLog(path, matcher, std::nullopt);
+  return {.view = reading.state.view(), .messages = reading.messages, .refused = reading.refused};
+}
+
+mapping::MissionView viewOfLogAt(const std::string& path, double until_s,
+                                 const matching::MatcherOptions& matcher) {
+  return readLog(path, matcher, world::Timestamp{std::llround(until_s * 1e6)}).state.view();
+}
+
+std::string recordingOf(const Where& where) {
+  if (!where.log.empty()) return where.log;
+  if (where.run.empty()) {
+    throw std::runtime_error("a running node keeps no history; ask a recording with --log or --run");
+  }
+  std::string path = where.run + "/mission.lcmlog";
+  if (!std::filesystem::exists(path)) {
+    throw std::runtime_error(path + " is missing: only a mission flown with --record has a history");
+  }
+  return path;
 }
 
 mapping::MissionView viewOf(const Where& where) {
@@ -92,11 +181,11 @@ mapping::MissionView viewOf(const Where& where) {
 
 Json ask(const Where& where, const Json& question) {
   if (!where.node.empty()) return fusion_node::askNode(where.node, question);
-  const mapping::MissionView view = viewOf(where);
-  const std::string query = question.at("query");
-  if (query == "status") return mapping::statusAnswer(view);
-  if (query == "labels") return mapping::labelsAnswer(view);
-  return mapping::atAnswer(view, question.at("x"), question.at("y"));
+  if (!where.run.empty()) return askRun(where, question);
+  const Reading reading = readLog(where.log, where.matcher, std::nullopt);
+  const mapping::MissionView view = reading.state.view();
+  const auto beliefs = [&]() -> const mapping::BeliefStore& { return reading.state.beliefs(); };
+  return mapping::answer({view, beliefs, where.matcher}, question);
 }
 
 }  // namespace shoal::console

@@ -7,7 +7,7 @@
 namespace shoal::console {
 
 void addUnbuiltCommands(CLI::App& app, Action& chosen) {
-  for (const std::string name : {"replay", "verify", "serve", "spy", "doctor", "area", "why", "name", "link",
+  for (const std::string name : {"replay", "verify", "serve", "spy", "doctor", "name", "link",
                                  "unlink", "exclude", "undo"}) {
     CLI::App* command =
         app.add_subcommand(name, "not built yet")->group("")->prefix_command()->fallthrough(false);
