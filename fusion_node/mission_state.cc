@@ -28,9 +28,16 @@ std::string_view phaseName(wire::Phase phase) {
   return "unknown";
 }
 
+std::string agreement(const wire::Heartbeat& h, const Digests& ours) {
+  if (h.map_of_state == 0 && h.map_digest == 0) return "none";
+  if (h.map_of_state != ours.state) return "behind";
+  return h.map_digest == ours.map ? "same" : "other";
+}
+
 }  // namespace
 
-mapping::NodeStatus statusOf(const std::string& node, const wire::Heartbeat& h, bool heard_whole) {
+mapping::NodeStatus statusOf(const std::string& node, const wire::Heartbeat& h, bool heard_whole,
+                             const Digests& ours) {
   return {.name = node,
           .phase = std::string(phaseName(h.phase)),
           .heard_s = h.time.seconds(),
@@ -47,7 +54,8 @@ mapping::NodeStatus statusOf(const std::string& node, const wire::Heartbeat& h, 
           .z_m = h.z_m,
           .rejected = h.rejected,
           .conflicts = h.conflicts,
-          .heard_whole = heard_whole};
+          .heard_whole = heard_whole,
+          .agreement = agreement(h, ours)};
 }
 
 MissionState::MissionState(int32_t mission, const matching::MatcherOptions& matcher, double cell_size_m)
@@ -139,7 +147,7 @@ mapping::MissionView MissionState::view() const {
                             .map_digest = map_digest_,
                             .nodes = {}};
   for (const auto& [name, h] : heartbeats_) {
-    view.nodes.push_back(statusOf(name, h, holdsWhole(name)));
+    view.nodes.push_back(statusOf(name, h, holdsWhole(name), {map_.state_digest, map_digest_}));
   }
   std::ranges::stable_sort(view.nodes, {}, [](const mapping::NodeStatus& n) {
     const auto robot = world::parseRobotId(n.name);

@@ -16,8 +16,14 @@
 
 namespace shoal::fusion_node {
 
+/// The state and the map of whoever answers.
+struct Digests {
+  uint64_t state = 0, map = 0;
+};
+
 /// A heartbeat as the answer to `status` shows it.
-mapping::NodeStatus statusOf(const std::string& node, const wire::Heartbeat& heartbeat, bool heard_whole);
+mapping::NodeStatus statusOf(const std::string& node, const wire::Heartbeat& heartbeat, bool heard_whole,
+                             const Digests& ours);
 
 /// What one process knows of a mission from all that it has heard: the replicated state, the last heartbeat
 /// of every node, and the map they add up to. Used by fusion nodes, by robots that fuse, and to read
@@ -61,6 +67,8 @@ class MissionState {
 
   /// Everything as one value to ask questions of, with the map as of the last refreshMap().
   mapping::MissionView view() const;
+
+  const matching::MatcherOptions& matcher() const { return matcher_; }
 
  private:
   int32_t mission_;

@@ -13,6 +13,7 @@
 #include "shoal/comms/channels.h"
 #include "shoal/mapping/atomic_file.h"
 #include "shoal/mapping/map_files.h"
+#include "shoal/mapping/questions.h"
 #include "shoal/wire/labels_codec.h"
 #include "shoal/wire/map_codec.h"
 #include "shoal/wire/matches_codec.h"
@@ -130,22 +131,10 @@ comms::Packet Node::heartbeat(int64_t now_us) {
 }
 
 nlohmann::ordered_json Node::answer(const Json& question) {
-  const std::string query = question.value("query", "");
   state_.refreshMap();
-  mapping::MissionView view = state_.view();
-  if (query == "status") return mapping::statusAnswer(view);
-  if (query == "labels") return mapping::labelsAnswer(view);
-  if (query == "at" && question.contains("x") && question["x"].is_number() && question.contains("y") &&
-      question["y"].is_number()) {
-    return mapping::atAnswer(view, question["x"], question["y"]);
-  }
-  if (query == "map") {
-    const world::Grid grid(view.cell_size_m);
-    return {{"cell_size_m", view.cell_size_m},
-            {"global_map_csv", mapping::globalMapCsv(view.map, grid)},
-            {"labels_csv", mapping::labelsCsv(view.map, grid)}};
-  }
-  return {{"error", "unknown question; questions are status, labels, at (with x and y) and map"}};
+  const mapping::MissionView view = state_.view();
+  const auto beliefs = [this]() -> const mapping::BeliefStore& { return state_.beliefs(); };
+  return mapping::answer({view, beliefs, state_.matcher()}, question);
 }
 
 void Node::finish() {

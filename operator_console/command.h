@@ -16,8 +16,20 @@ void addLaunchCommand(CLI::App& app, Action& chosen);
 void addMatchCommand(CLI::App& app, Action& chosen);
 void addPlayCommand(CLI::App& app, Action& chosen);
 
-/// status, labels, at X Y, export: one grammar for a running node, a finished run and a recording.
+/// labels, at X Y, export, and status: one grammar for a running node, a finished run and a recording.
 void addQuestionCommands(CLI::App& app, Action& chosen);
+/// status, once or again and again.
+void addStatusCommand(CLI::App& app, Action& chosen);
+/// area LABEL: patches as table, CSV, GeoJSON or JSON.
+void addAreaCommand(CLI::App& app, Action& chosen);
+/// why LABEL: what speaks for a label's topics being one.
+void addWhyCommand(CLI::App& app, Action& chosen);
+/// diff T1 T2: what changed on the map, from a recording.
+void addDiffCommand(CLI::App& app, Action& chosen);
+/// node R03: what a node has told.
+void addNodeCommand(CLI::App& app, Action& chosen);
+/// completion SHELL: a script that completes commands and flags.
+void addCompletionCommand(CLI::App& app, Action& chosen);
 void addEvaluateCommand(CLI::App& app, Action& chosen);
 void addReplayCommand(CLI::App& app, Action& chosen);
 void addReproduceCommand(CLI::App& app, Action& chosen);

@@ -42,7 +42,8 @@ Json nodesOf(const RunInfo& run) {
             world::name(share.robot) == node && share.digest == wire::shareDigest(heartbeat.own_digest);
       }
     }
-    nodes.push_back(mapping::toJson(fusion_node::statusOf(node, heartbeat, heard_whole)));
+    nodes.push_back(mapping::toJson(
+        fusion_node::statusOf(node, heartbeat, heard_whole, {run.state_digest, run.map_digest})));
   }
   return nodes;
 }
@@ -75,6 +76,10 @@ std::string finishRun(const RunInfo& run) {
       {"cell_size_m", options.cell_size_m},
       {"altitude_m", options.altitude_m},
       {"frame_period_s", options.frame_period_s},
+      {"matching",
+       {{"matcher", options.matcher.matcher},
+        {"similarity", options.matcher.similarity},
+        {"sigma", options.matcher.leastSimilarity()}}},
       {"sensors",
        {{"exposure", options.sensors.exposure},
         {"color_cast", options.sensors.color_cast},

@@ -35,6 +35,11 @@ int main(int argc, char** argv) {
   console::addReproduceCommand(app, chosen);
   console::addTuneCommand(app, chosen);
   console::addQuestionCommands(app, chosen);
+  console::addAreaCommand(app, chosen);
+  console::addWhyCommand(app, chosen);
+  console::addDiffCommand(app, chosen);
+  console::addNodeCommand(app, chosen);
+  console::addCompletionCommand(app, chosen);
   console::addUnbuiltCommands(app, chosen);
   try {
     app.parse(argc, argv);

@@ -1,14 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "operator_console/mission_sources.h"
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <utility>
+
+#include <spdlog/spdlog.h>
 
 #include "fusion_node/query_server.h"
 #include "operator_console/recorded_mission.h"
+#include "shoal/eval/evaluation.h"
 #include "shoal/mapping/atomic_file.h"
+#include "shoal/mapping/belief_pieces.h"
+#include "shoal/mapping/fusion.h"
 #include "shoal/mapping/map_files.h"
+#include "shoal/mapping/questions.h"
 
 namespace shoal::console {
 namespace {
@@ -32,26 +41,101 @@ mapping::MissionView viewOfNode(const std::string& state_dir) {
   return view;
 }
 
-}  // namespace
-
-mapping::MissionView viewOfRun(const std::string& dir) {
+Json readSummary(const std::string& dir) {
   const std::string path = dir + "/summary.json";
   if (!std::filesystem::exists(path)) {
     throw std::runtime_error(dir + " is not a finished run: it has no summary.json");
   }
+  try {
+    return Json::parse(mapping::readFile(path));
+  } catch (const Json::exception& error) {
+    throw std::runtime_error(path + ": " + error.what());
+  }
+}
+
+}  // namespace
+
+mapping::MissionView viewOfRun(const std::string& dir) {
+  const Json summary = readSummary(dir);
   mapping::MissionView view;
   try {
-    const Json summary = Json::parse(mapping::readFile(path));
     view.mission = summary.at("mission_id");
     view.cell_size_m = summary.at("cell_size_m");
     view.state_digest = digestFrom(summary.at("digest").at("state"));
     view.map_digest = digestFrom(summary.at("digest").at("map"));
     for (const Json& node : summary.at("nodes")) view.nodes.push_back(mapping::nodeFromJson(node));
   } catch (const Json::exception& error) {
-    throw std::runtime_error(path + ": " + error.what());
+    throw std::runtime_error(dir + "/summary.json: " + error.what());
   }
   view.map = mapping::readGlobalMap(dir, world::Grid(view.cell_size_m));
   return view;
+}
+
+namespace {
+
+// Which matcher a run's map was made with, when its summary tells.
+matching::MatcherOptions matcherOfRun(const Json& summary, const matching::MatcherOptions& otherwise) {
+  const auto said = summary.find("matching");
+  if (said == summary.end()) return otherwise;
+  matching::MatcherOptions options;
+  said->at("matcher").get_to(options.matcher);
+  said->at("similarity").get_to(options.similarity);
+  if (said->at("sigma").is_number()) options.sigma = said->at("sigma").get<double>();
+  return options;
+}
+
+bool showSameLabels(const mapping::GlobalMap& a, const mapping::GlobalMap& b) {
+  return std::ranges::equal(a.cells, b.cells, [](const mapping::GlobalCell& x, const mapping::GlobalCell& y) {
+    return x.cell == y.cell && x.label == y.label && x.robot == y.robot;
+  });
+}
+
+Json askRun(const Where& where, const Json& question) {
+  mapping::MissionView view = viewOfRun(where.run);
+  const Json summary = readSummary(where.run);
+  mapping::Witness witness{.view = view, .beliefs = {}, .matcher = matcherOfRun(summary, where.matcher)};
+  std::optional<mapping::BeliefStore> store;  // from the robots' own files, when it is needed
+  witness.beliefs = [&]() -> const mapping::BeliefStore& {
+    if (store) return *store;
+    store.emplace();
+    for (const mapping::LocalBelief& belief :
+         eval::readRun(where.run, world::Grid(view.cell_size_m)).robots) {
+      for (const mapping::Piece& piece : mapping::wholePieces(belief)) store->apply(piece);
+    }
+    const mapping::GlobalMap again = mapping::fuse(*store, witness.matcher);
+    if (!showSameLabels(again, view.map)) {
+      spdlog::warn("{}: the robots' own files, matched with {}, do not give the labels of global_map.csv",
+                   where.run, witness.matcher.matcher);
+    }
+    view.map.correspondences = again.correspondences;  // the files of a map do not hold them
+    return *store;
+  };
+  return mapping::answer(witness, question);
+}
+
+}  // namespace
+
+Recording viewOfLog(const std::string& path, const matching::MatcherOptions& matcher) {
+  const RecordedMission recorded = readRecording(path, matcher);
+  return {.view = recorded.state.view(), .messages = recorded.messages, .refused = recorded.refused};
+}
+
+mapping::MissionView viewOfLogAt(const std::string& path, double until_s,
+                                 const matching::MatcherOptions& matcher) {
+  const world::Timestamp until{std::llround(until_s * 1e6)};
+  return readRecording(path, matcher, {}, until).state.view();
+}
+
+std::string recordingOf(const Where& where) {
+  if (!where.log.empty()) return where.log;
+  if (where.run.empty()) {
+    throw std::runtime_error("a running node keeps no history; ask a recording with --log or --run");
+  }
+  std::string path = where.run + "/mission.lcmlog";
+  if (!std::filesystem::exists(path)) {
+    throw std::runtime_error(path + " is missing: only a mission flown with --record has a history");
+  }
+  return path;
 }
 
 mapping::MissionView viewOf(const Where& where) {
@@ -62,11 +146,11 @@ mapping::MissionView viewOf(const Where& where) {
 
 Json ask(const Where& where, const Json& question) {
   if (!where.node.empty()) return fusion_node::askNode(where.node, question);
-  const mapping::MissionView view = viewOf(where);
-  const std::string query = question.at("query");
-  if (query == "status") return mapping::statusAnswer(view);
-  if (query == "labels") return mapping::labelsAnswer(view);
-  return mapping::atAnswer(view, question.at("x"), question.at("y"));
+  if (!where.run.empty()) return askRun(where, question);
+  const RecordedMission reading = readRecording(where.log, where.matcher);
+  const mapping::MissionView view = reading.state.view();
+  const auto beliefs = [&]() -> const mapping::BeliefStore& { return reading.state.beliefs(); };
+  return mapping::answer({view, beliefs, where.matcher}, question);
 }
 
 }  // namespace shoal::console

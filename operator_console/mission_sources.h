@@ -24,8 +24,17 @@ mapping::MissionView viewOfRun(const std::string& dir);
 /// @throws std::runtime_error as viewOfRun() and readRecording(), or when no node answers.
 mapping::MissionView viewOf(const Where& where);
 
-/// Answers {"query": "status" | "labels" | "at", ...} from wherever. A question that a node cannot answer
-/// comes back as {"error": ...}.
+/// The map as a recording held it at mission time `until_s`: what had been sent by then, fused.
+/// @throws std::runtime_error as viewOfLog().
+mapping::MissionView viewOfLogAt(const std::string& path, double until_s,
+                                 const matching::MatcherOptions& matcher);
+
+/// The recording to look into for the past: --log, or the mission.lcmlog of --run.
+/// @throws std::runtime_error when there is none: a node keeps no history.
+std::string recordingOf(const Where& where);
+
+/// Answers any question of mapping/questions.h from wherever. What cannot be answered comes back as
+/// {"error": ...}. A finished run is matched as its summary.json says, else as `where` says.
 nlohmann::ordered_json ask(const Where& where, const nlohmann::ordered_json& question);
 
 }  // namespace shoal::console

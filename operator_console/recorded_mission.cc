@@ -26,13 +26,15 @@ int64_t total(const comms::Stats& stats) {
 }  // namespace
 
 RecordedMission readRecording(const std::string& path, const matching::MatcherOptions& matcher,
-                              const OnMessage& on_message) {
+                              const OnMessage& on_message, std::optional<world::Timestamp> until) {
   const int32_t mission = missionOf(path);
   RecordedMission recorded{mission, {mission, matcher}, 0, 0};
   comms::Stats refused;
   comms::LogReader log(path);
   while (const auto event = log.next()) {
     if (!event->packet.channel.starts_with("SHOAL_")) continue;  // cameras, LCM's own self test
+    const auto header = wire::peek(event->packet.bytes);
+    if (until && header && header->time > *until) continue;
     recorded.state.hear(event->packet, refused);
     if (const int64_t now_refused = total(refused); now_refused != recorded.refused) {
       recorded.refused = now_refused;
@@ -40,8 +42,7 @@ RecordedMission readRecording(const std::string& path, const matching::MatcherOp
     }
     ++recorded.messages;
     if (!on_message) continue;
-    on_message(*comms::parseChannel(event->packet.channel), *wire::peek(event->packet.bytes), event->packet,
-               recorded.state);
+    on_message(*comms::parseChannel(event->packet.channel), *header, event->packet, recorded.state);
   }
   recorded.refused += static_cast<int64_t>(log.counts().damaged + log.counts().large);
   recorded.state.refreshMap();

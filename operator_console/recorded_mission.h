@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "fusion_node/mission_state.h"
@@ -28,8 +29,9 @@ using OnMessage = std::function<void(const comms::ChannelName& channel, const wi
 
 /// Reads a recording from its beginning to its end and fuses what it adds up to. The first heartbeat says
 /// which mission it is of. A recording is untrusted input: damage is skipped and counted.
+/// @param until  messages of a later mission time are left out; none: all count.
 /// @throws std::runtime_error when the file cannot be read or holds no heartbeat of any mission.
 RecordedMission readRecording(const std::string& path, const matching::MatcherOptions& matcher,
-                              const OnMessage& on_message = {});
+                              const OnMessage& on_message = {}, std::optional<world::Timestamp> until = {});
 
 }  // namespace shoal::console

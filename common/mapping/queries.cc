@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "shoal/mapping/queries.h"
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "shoal/mapping/map_files.h"
@@ -36,7 +38,8 @@ Json toJson(const NodeStatus& n) {
           {"position_m", {rounded(n.x_m, 1e3), rounded(n.y_m, 1e3), rounded(n.z_m, 1e3)}},
           {"rejected", n.rejected},
           {"conflicts", n.conflicts},
-          {"heard_whole", n.heard_whole}};
+          {"heard_whole", n.heard_whole},
+          {"agreement", n.agreement}};
 }
 
 NodeStatus nodeFromJson(const Json& json) {
@@ -58,6 +61,7 @@ NodeStatus nodeFromJson(const Json& json) {
   json.at("rejected").get_to(n.rejected);
   json.at("conflicts").get_to(n.conflicts);
   json.at("heard_whole").get_to(n.heard_whole);
+  n.agreement = json.value("agreement", "none");  // runs of older builds do not say
   return n;
 }
 
@@ -74,26 +78,77 @@ Json statusAnswer(const MissionView& view) {
 
 Json labelsAnswer(const MissionView& view) {
   const auto area = areas(view.map, world::Grid(view.cell_size_m));
+  struct Seen {
+    world::Timestamp last;
+    double certainty = 0;  // summed over the cells
+  };
+  std::map<world::GlobalLabel, Seen> seen;
+  for (const GlobalCell& c : view.map.cells) {
+    Seen& s = seen.try_emplace(c.label, Seen{c.seen}).first->second;
+    s.last = std::max(s.last, c.seen);
+    s.certainty += static_cast<double>(c.certainty);
+  }
   Json rows = Json::array();
   for (const LabelSummary& row : view.map.labels) {
     Json robots = Json::array();
     for (const world::RobotId robot : row.robots) robots.push_back(name(robot));
     const auto covered = area.find(row.label);
-    rows.push_back({{"label", number(row.label)},
-                    {"name", row.name},
-                    {"cells", row.cells},
-                    {"area_m2", rounded(covered == area.end() ? 0.0 : covered->second, 1e3)},
-                    {"robots", std::move(robots)},
-                    {"first_seen_s", rounded(row.first_seen.seconds(), 1e3)}});
+    const Seen& s = seen[row.label];
+    rows.push_back(
+        {{"label", number(row.label)},
+         {"name", row.name},
+         {"cells", row.cells},
+         {"area_m2", rounded(covered == area.end() ? 0.0 : covered->second, 1e3)},
+         {"robots", std::move(robots)},
+         {"first_seen_s", rounded(row.first_seen.seconds(), 1e3)},
+         {"last_seen_s", rounded(s.last.seconds(), 1e3)},
+         {"certainty", rounded(row.cells > 0 ? s.certainty / static_cast<double>(row.cells) : 0.0, 1e4)}});
   }
   return {{"labels", std::move(rows)}};
 }
 
-Json atAnswer(const MissionView& view, double x_m, double y_m) {
+namespace {
+
+struct Opinion {
+  world::RobotId robot{};
+  world::TopicId topic{};
+  world::Timestamp seen;
+  uint8_t steps = 0;  // certainty x kCertaintySteps, 0 while unheard
+};
+
+// What every robot said of the cells of one column, newest first as the map ranks them.
+std::map<world::CellIndex, std::vector<Opinion>> opinionsOn(const BeliefStore& beliefs,
+                                                            const world::CellIndex& column) {
+  std::map<world::CellIndex, std::vector<Opinion>> opinions;
+  const auto here = [&column](const world::CellIndex& c) { return c.x == column.x && c.y == column.y; };
+  beliefs.visit([&](const Piece& piece) {  // a robot's bricks before its certainties
+    if (const auto* brick = std::get_if<BrickPart>(&piece.content)) {
+      for (const BrickCell& c : brick->cells)
+        if (here(c.cell)) opinions[c.cell].push_back({piece.key.robot, c.topic, c.seen});
+    } else if (const auto* part = std::get_if<CertaintyPart>(&piece.content)) {
+      for (const CertaintyCell& c : part->cells) {
+        if (!here(c.cell) || !opinions.contains(c.cell)) continue;
+        for (Opinion& o : opinions[c.cell])
+          if (o.robot == piece.key.robot) o.steps = c.steps;
+      }
+    }
+  });
+  for (auto& [cell, list] : opinions) {
+    std::ranges::sort(list, std::greater<>(), [](const Opinion& o) { return std::pair(o.seen, o.robot); });
+  }
+  return opinions;
+}
+
+}  // namespace
+
+Json atAnswer(const MissionView& view, const BeliefStore& beliefs, double x_m, double y_m) {
   const world::Grid grid(view.cell_size_m);
   const double farthest = view.cell_size_m * (INT32_MAX - 1);  // cells have 32-bit indices
   const bool is_near = std::abs(x_m) <= farthest && std::abs(y_m) <= farthest;
   const world::CellIndex column = is_near ? grid.cellOf({x_m, y_m, 0}) : world::CellIndex{};
+  std::map<std::pair<world::RobotId, world::TopicId>, world::GlobalLabel> label_of;
+  for (const Correspondence& k : view.map.correspondences) label_of[{k.robot, k.topic}] = k.label;
+  const auto opinions = is_near ? opinionsOn(beliefs, column) : decltype(opinionsOn(beliefs, column)){};
   Json cells = Json::array();
   for (const GlobalCell& c : view.map.cells) {
     if (!is_near || c.cell.x != column.x || c.cell.y != column.y) continue;
@@ -105,9 +160,20 @@ Json atAnswer(const MissionView& view, double x_m, double y_m) {
               {"name", ""},
               {"robot", name(c.robot)},
               {"seen_s", rounded(c.seen.seconds(), 1e3)},
-              {"certainty", rounded(c.certainty, 1e4)}};
+              {"certainty", rounded(c.certainty, 1e4)},
+              {"history", Json::array()}};
     for (const LabelSummary& row : view.map.labels)
       if (row.label == c.label) cell["name"] = row.name;
+    const auto told = opinions.find(c.cell);
+    for (const Opinion& o : told == opinions.end() ? std::vector<Opinion>{} : told->second) {
+      const auto known = label_of.find({o.robot, o.topic});
+      const auto label = known == label_of.end() ? world::globalLabel(o.robot, o.topic) : known->second;
+      cell["history"].push_back({{"robot", name(o.robot)},
+                                 {"topic", number(o.topic)},
+                                 {"label", number(label)},
+                                 {"seen_s", rounded(o.seen.seconds(), 1e3)},
+                                 {"certainty", rounded(static_cast<float>(o.steps) / kCertaintySteps, 1e4)}});
+    }
     cells.push_back(std::move(cell));
   }
   return {{"x_m", x_m}, {"y_m", y_m}, {"cells", std::move(cells)}};

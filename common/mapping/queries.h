@@ -7,6 +7,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "shoal/mapping/belief_store.h"
 #include "shoal/mapping/global_map.h"
 #include "shoal/world/grid.h"
 
@@ -27,6 +28,9 @@ struct NodeStatus {
   float x_m = 0, y_m = 0, z_m = 0;  ///< position of the camera, world
   int32_t rejected = 0, conflicts = 0;
   bool heard_whole = false;  ///< the answering node holds all that this one has to say
+  /// Its map beside that of who answers: "same"; "behind" when it was made from another state; "other" when
+  /// the states are equal and the maps are not, which is an alarm; "none" when it does not fuse.
+  std::string agreement = "none";
 };
 
 /// A mission as one place knows it: a live node, a finished run or a recording. All questions are asked of
@@ -47,7 +51,9 @@ nlohmann::ordered_json toJson(const NodeStatus& node);
 NodeStatus nodeFromJson(const nlohmann::ordered_json& json);
 /// Sixteen hexadecimal digits, as digests are shown everywhere.
 std::string digestText(uint64_t digest);
-/// Every cell of the column at (x, y), metres, world, from low to high. No cells: an empty list.
-nlohmann::ordered_json atAnswer(const MissionView& view, double x_m, double y_m);
+/// Every cell of the column at (x, y), metres, world, from low to high, each with its history: how every
+/// robot that told of it labels it and when it last saw it, newest first. No cells: an empty list.
+/// @param beliefs  what the view's map was fused from.
+nlohmann::ordered_json atAnswer(const MissionView& view, const BeliefStore& beliefs, double x_m, double y_m);
 
 }  // namespace shoal::mapping

@@ -82,10 +82,10 @@ TEST_F(FilesTest, AGlobalMapComesBackAsItWas) {
 TEST(AtAnswerTest, NothingIsAsFarAwayAsNumbersGo) {
   MissionView view;
   view.map.cells.push_back({{0, 0, 0}, world::GlobalLabel{1}, world::RobotId{0}, {0}, 1.f});
-  EXPECT_EQ(atAnswer(view, 0.2, -0.4)["cells"].size(), 1u);
+  EXPECT_EQ(atAnswer(view, BeliefStore{}, 0.2, -0.4)["cells"].size(), 1u);
   for (const double far : {1e300, -1e300, 3e9, -3e9}) {
-    EXPECT_TRUE(atAnswer(view, far, 0)["cells"].empty()) << far;
-    EXPECT_TRUE(atAnswer(view, 0, far)["cells"].empty()) << far;
+    EXPECT_TRUE(atAnswer(view, BeliefStore{}, far, 0)["cells"].empty()) << far;
+    EXPECT_TRUE(atAnswer(view, BeliefStore{}, 0, far)["cells"].empty()) << far;
   }
 }
 

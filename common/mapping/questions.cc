@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "shoal/mapping/questions.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "shoal/mapping/area_answer.h"
+#include "shoal/mapping/map_files.h"
+#include "shoal/mapping/node_answer.h"
+#include "shoal/mapping/why_answer.h"
+
+namespace shoal::mapping {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// As far as mission times go, whatever a stranger asks.
+constexpr double kFarthestS = 4e12;
+
+PatchFilter filterOf(const Json& question) {
+  PatchFilter filter;
+  filter.min_m2 = question.value("min_m2", 0.0);
+  filter.certainty = question.value("certainty", 0.0);
+  if (question.contains("since_s")) {
+    const double since_s = question.at("since_s");
+    if (!(std::abs(since_s) <= kFarthestS)) throw std::invalid_argument("since_s is no mission time");
+    filter.since = world::Timestamp{std::llround(since_s * 1e6)};
+  }
+  return filter;
+}
+
+Json mapAnswer(const MissionView& view) {
+  const world::Grid grid(view.cell_size_m);
+  return {{"cell_size_m", view.cell_size_m},
+          {"global_map_csv", globalMapCsv(view.map, grid)},
+          {"labels_csv", labelsCsv(view.map, grid)}};
+}
+
+}  // namespace
+
+Json answer(const Witness& witness, const Json& question) {
+  const MissionView& view = witness.view;
+  try {
+    const std::string query = question.value("query", "");
+    if (query == "status") return statusAnswer(view);
+    if (query == "labels") return labelsAnswer(view);
+    if (query == "map") return mapAnswer(view);
+    if (query == "at") return atAnswer(view, witness.beliefs(), question.at("x"), question.at("y"));
+    if (query == "area") return areaAnswer(view, question.at("label"), filterOf(question));
+    if (query == "why") return whyAnswer(view, witness.beliefs(), witness.matcher, question.at("label"));
+    if (query == "node") return nodeAnswer(view, witness.beliefs(), question.at("node"));
+    return {{"error", "unknown question; questions are status, labels, map, at, area, why and node"}};
+  } catch (const Json::exception& error) {
+    return {{"error", error.what()}};
+  } catch (const std::invalid_argument& error) {
+    return {{"error", error.what()}};
+  }
+}
+
+}  // namespace shoal::mapping

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <chrono>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <thread>
+
+#include <spdlog/fmt/fmt.h>
+
+#include "fusion_node/process.h"
+#include "operator_console/asking.h"
+#include "operator_console/command.h"
+#include "operator_console/terminal.h"
+
+namespace shoal::console {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct StatusQuestion {
+  Asking asking;
+  bool watch = false;
+  double every_s = 2;
+};
+
+// What was sent of what might have been, since mission time 0.
+std::string budgetUsed(const Json& n) {
+  const double allowed = n["budget"].get<double>() * n["heard_s"].get<double>();
+  return allowed > 0 ? fmt::format("{:.0f}%", 100 * n["bytes_sent"].get<double>() / allowed) : "-";
+}
+
+void printRow(const Json& n) {
+  const bool flies = n["phase"] != "node";
+  const std::string images =
+      fmt::format("{}/{}", n["observation"].get<int>() + 1, n["num_observations"].get<int>());
+  const std::string told = !flies ? "-" : n["heard_whole"].get<bool>() ? "all" : "part";
+  const std::string agreement = n["agreement"];
+  fmt::print("{:<9} {:<7} {:>8.1f} {:>7} {:>6} {:>6} {:>5} {:>6} {:>4} {:<4} {}\n",
+             n["name"].get<std::string>(), n["phase"].get<std::string>(), n["heard_s"].get<double>(),
+             flies ? images : "-", n["topics"].get<int>(), n["cells"].get<int>(), budgetUsed(n),
+             n["queue_bytes"].get<int>(), n["rejected"].get<int>(), told,
+             agreement == "none"    ? "-"
+             : agreement == "other" ? alarming("OTHER")
+                                    : agreement);
+}
+
+void print(const Json& a) {
+  fmt::print("mission {}: {} cells, {} labels, cells of {} m\n", a["mission_id"].get<int64_t>(),
+             a["cells"].get<int64_t>(), a["labels"].get<int64_t>(), a["cell_size_m"].get<double>());
+  fmt::print("state {}, map {}\n", a["digest"]["state"].get<std::string>(),
+             a["digest"]["map"].get<std::string>());
+  fmt::print("{:<9} {:<7} {:>8} {:>7} {:>6} {:>6} {:>5} {:>6} {:>4} {:<4} {}\n", "node", "phase", "heard s",
+             "images", "topics", "cells", "used", "queue", "bad", "told", "map");
+  for (const Json& n : a["nodes"]) printRow(n);
+}
+
+int status(const StatusQuestion& q) {
+  if (q.watch) fusion_node::catchStopSignals();
+  do {
+    const Json a = answerTo(q.asking, {{"query", "status"}});
+    if (q.watch) clearTerminal();
+    if (q.asking.json) {
+      std::cout << a.dump(q.watch ? -1 : 2) << '\n';
+    } else {
+      print(a);
+    }
+    if (!std::cout.flush() || std::fflush(stdout) != 0) break;  // nobody reads any more
+    const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>(q.every_s);
+    while (q.watch && !fusion_node::stopRequested() && std::chrono::steady_clock::now() < until) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+  } while (q.watch && !fusion_node::stopRequested());
+  return 0;
+}
+
+}  // namespace
+
+void addStatusCommand(CLI::App& app, Action& chosen) {
+  CLI::App* command = app.add_subcommand("status", "how every node of a mission is doing");
+  const auto q = std::make_shared<StatusQuestion>();
+  addWhere(*command, q->asking);
+  auto* watch =
+      command->add_flag("--watch", q->watch, "ask again and again until Ctrl-C; with --json a line each");
+  command->add_option("--every", q->every_s, "seconds between two looks")
+      ->needs(watch)
+      ->check(CLI::Range(0.1, 3600.0))
+      ->capture_default_str();
+  command->footer(
+      "used: bytes sent of what the budget allowed so far. queue: bytes that wait. bad: messages refused.\n"
+      "told: whether all that a robot has to say was heard. map: the same as this one, made of another\n"
+      "state (behind), or OTHER though made of the same state: an alarm, unless a recording was asked with\n"
+      "another --matcher than the mission's.\n\n"
+      "  operator_console status --node state --watch");
+  command->callback([q, &chosen] {
+    chosen = [q] {
+      if (q->watch && !q->asking.where.run.empty()) {
+        throw std::invalid_argument("--watch is for --node and --log: a finished run does not change");
+      }
+      return status(*q);
+    };
+  });
+}
+
+}  // namespace shoal::console

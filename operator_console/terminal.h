@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "operator_console/render.h"
+
+namespace shoal::console {
+
+/// Whether standard output is a terminal: only then colours, and only then pictures that redraw.
+bool isOnTerminal();
+
+/// The text so that it catches the eye, on a terminal; else as it is. The columns it takes stay the same.
+std::string alarming(const std::string& text);
+
+/// Two columns in a colour, on a terminal; else nothing.
+std::string swatch(const Rgb& color);
+
+/// Clears the terminal and goes to its top left corner; nothing when there is none.
+void clearTerminal();
+
+}  // namespace shoal::console
