@@ -115,11 +115,6 @@ Json askRun(const Where& where, const Json& question) {
 
 }  // namespace
 
-Recording viewOfLog(const std::string& path, const matching::MatcherOptions& matcher) {
-  const RecordedMission recorded = readRecording(path, matcher);
-  return {.view = recorded.state.view(), .messages = recorded.messages, .refused = recorded.refused};
-}
-
 mapping::MissionView viewOfLogAt(const std::string& path, double until_s,
                                  const matching::MatcherOptions& matcher) {
   const world::Timestamp until{std::llround(until_s * 1e6)};

@@ -12,13 +12,13 @@ namespace shoal::console {
 namespace {
 
 struct Flags {
-  std::string log, out, sigma = "0.75", similarity;
+  std::string log, out, sigma = "auto", similarity;
   matching::MatcherOptions matcher;
   bool json = false;
 };
 
 int run(Flags flags) {
-  flags.matcher.sigma = fusion_node::parseSigma(flags.sigma);
+  flags.matcher.sigma = matching::parseSigma(flags.sigma);
   flags.matcher.similarity =
       flags.similarity.empty() ? matching::usualSimilarity(flags.matcher.matcher) : flags.similarity;
   const Replay result = replay(flags.log, flags.out, flags.matcher);
@@ -33,11 +33,13 @@ void addReplayCommand(CLI::App& app, Action& chosen) {
   const auto flags = std::make_shared<Flags>();
   command->add_option("log", flags->log, "a recording made by lcm-logger")->required();
   command->add_option("--out", flags->out, "folder for the map's files")->required();
-  command->add_option("--matcher", flags->matcher.matcher, "id, hungarian or clear: as the mission's")
+  command->add_option("--matcher", flags->matcher.matcher, "id, hungarian, clear or shoal: as the mission's")
       ->capture_default_str();
   command->add_option("--similarity", flags->similarity,
-                      "cosine, overlap, l1 or l2 (default: l2 for hungarian, else cosine)");
-  command->add_option("--sigma", flags->sigma, "least similarity of a match, in (0, 1]")
+                      "cosine, overlap, l1, l2 or discounted (default: the matcher's usual)");
+  command
+      ->add_option("--sigma", flags->sigma,
+                   "least similarity of a match: auto (the matcher's usual) or a number in (0, 1]")
       ->capture_default_str();
   command->add_flag("--json", flags->json, "answer in JSON");
   command->callback([&chosen, flags] { chosen = [flags] { return run(*flags); }; });

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "shoal/mapping/topic_similarities.h"
 
-#include "shoal/matching/similarity.h"
-
 #include "shoal/matching/discounted_similarity.h"
+#include "shoal/matching/similarity.h"
 
 namespace shoal::mapping {
 
