@@ -17,9 +17,12 @@ void addWhere(CLI::App& command, Asking& asking) {
   where->add_option("--run", asking.where.run, "folder of a finished mission");
   where->add_option("--log", asking.where.log, "a recording made by lcm-logger");
   where->require_option(1);
-  command.add_option("--matcher", asking.where.matcher.matcher, "for --log: id, hungarian, clear or shoal")
+  command
+      .add_option("--matcher", asking.where.matcher.matcher,
+                  "for --log: id, hungarian, incremental, components, clear or shoal")
       ->capture_default_str();
-  command.add_option("--similarity", asking.similarity, "for --log: cosine, overlap, l1, l2 or discounted");
+  command.add_option("--similarity", asking.similarity,
+                     "for --log: cosine, overlap, l1, l2, hellinger, js or discounted");
   command
       .add_option("--sigma", asking.sigma,
                   "for --log: least similarity of a match: auto or a number in (0, 1]")

@@ -139,6 +139,12 @@ std::string scoreTable(const Evaluation& e) {
     std::string what = m.matcher;
     if (m.matcher == "id") what = "ID (topic j is topic j)";
     if (m.matcher == "hungarian") what = "sequential Hungarian, " + m.similarity;
+    if (m.matcher == "incremental") {
+      what = fmt::format("incremental Hungarian, {} {:.2f}", m.similarity, m.leastSimilarity());
+    }
+    if (m.matcher == "components") {
+      what = fmt::format("components, {} {:.2f}", m.similarity, m.leastSimilarity());
+    }
     if (m.matcher == "clear") what = fmt::format("CLEAR, {} {:.2f}", m.similarity, m.leastSimilarity());
     if (m.matcher == "shoal") what = fmt::format("Shoal {:.2f}", m.leastSimilarity());
     row(what, e.scores[i]);
@@ -154,10 +160,11 @@ void addEvaluateCommand(CLI::App& app, Action& chosen) {
   const auto flags = std::make_shared<Flags>();
   command->add_option("--run", flags->run, "folder of the mission")->required();
   command->add_option("--world", flags->world, "the world it was flown over")->required();
-  command->add_option("--matcher", flags->matcher, "all, id, hungarian, clear or shoal")
+  command
+      ->add_option("--matcher", flags->matcher, "all, id, hungarian, incremental, components, clear or shoal")
       ->capture_default_str();
   command->add_option("--similarity", flags->similarity,
-                      "cosine, overlap, l1, l2 or discounted (default: the matcher's usual)");
+                      "cosine, overlap, l1, l2, hellinger, js or discounted (default: the matcher's usual)");
   command
       ->add_option("--sigma", flags->sigma,
                    "least similarity of a match: auto (the matcher's usual) or a number in (0, 1]")

@@ -40,9 +40,11 @@ void addLaunchCommand(CLI::App& app, Action& chosen) {
       ->capture_default_str();
   command->add_option("--rate", o.rate, "mission seconds per wall second: 1, 10, or max")
       ->capture_default_str();
-  command->add_option("--matcher", o.matcher.matcher, "id, hungarian, clear or shoal")->capture_default_str();
+  command
+      ->add_option("--matcher", o.matcher.matcher, "id, hungarian, incremental, components, clear or shoal")
+      ->capture_default_str();
   command->add_option("--similarity", flags->similarity,
-                      "cosine, overlap, l1, l2 or discounted (default: the matcher's usual)");
+                      "cosine, overlap, l1, l2, hellinger, js or discounted (default: the matcher's usual)");
   command
       ->add_option("--sigma", flags->sigma,
                    "least similarity of a match: auto (the matcher's usual) or a number in (0, 1]")

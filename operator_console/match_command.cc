@@ -12,9 +12,10 @@ void addMatchCommand(CLI::App& app, Action& chosen) {
       app.add_subcommand("match", "match labels given as word counts or as an association graph");
   const auto options = std::make_shared<MatchFileOptions>();
   command->add_option("file", options->path, "JSON file, - for standard input")->required();
-  command->add_option("--matcher", options->matcher, "id, hungarian, clear or shoal");
+  command->add_option("--matcher", options->matcher,
+                      "id, hungarian, incremental, components, clear or shoal");
   command->add_option("--similarity", options->similarity,
-                      "cosine, overlap, l1, l2 or discounted (default: the matcher's usual)");
+                      "cosine, overlap, l1, l2, hellinger, js or discounted (default: the matcher's usual)");
   command->add_option("--sigma", options->sigma,
                       "least similarity of a match: auto (the matcher's usual) or a number in (0, 1]");
   command->add_flag("--distinct", options->distinct, "never merge a robot's own labels");

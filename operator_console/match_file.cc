@@ -94,9 +94,9 @@ int runMatch(const MatchFileOptions& flags, std::istream& in, std::ostream& out,
       if (flags.similarity || flags.sigma) {
         err << "match: warning: the edges are given, so --similarity and --sigma decide nothing\n";
       }
-      if (options.matcher != "clear") {
+      if (options.matcher != "clear" && options.matcher != "components") {
         return failed("matcher \"" + options.matcher + "\" compares word counts, but \"" + flags.path +
-                          "\" is a graph; \"clear\" can match it",
+                          "\" is a graph; \"clear\" and \"components\" can match it",
                       2);
       }
     }

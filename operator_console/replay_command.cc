@@ -33,10 +33,12 @@ void addReplayCommand(CLI::App& app, Action& chosen) {
   const auto flags = std::make_shared<Flags>();
   command->add_option("log", flags->log, "a recording made by lcm-logger")->required();
   command->add_option("--out", flags->out, "folder for the map's files")->required();
-  command->add_option("--matcher", flags->matcher.matcher, "id, hungarian, clear or shoal: as the mission's")
+  command
+      ->add_option("--matcher", flags->matcher.matcher,
+                   "as the mission's: id, hungarian, incremental, components, clear or shoal")
       ->capture_default_str();
   command->add_option("--similarity", flags->similarity,
-                      "cosine, overlap, l1, l2 or discounted (default: the matcher's usual)");
+                      "cosine, overlap, l1, l2, hellinger, js or discounted (default: the matcher's usual)");
   command
       ->add_option("--sigma", flags->sigma,
                    "least similarity of a match: auto (the matcher's usual) or a number in (0, 1]")

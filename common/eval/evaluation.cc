@@ -154,6 +154,7 @@ Score scoreSingle(const mapping::LocalBelief& single, const TruthOfCell& truth) 
 std::vector<matching::MatcherOptions> allMatchers() {
   return {{.matcher = "id"},
           {.matcher = "hungarian", .similarity = "l2"},
+          {.matcher = "incremental", .similarity = "cosine"},
           {.matcher = "clear", .similarity = "cosine"},
           {.matcher = "shoal", .similarity = "discounted"}};
 }

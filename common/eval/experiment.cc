@@ -149,10 +149,10 @@ std::vector<Score> scoreTeam(const TeamWords& words, const LearningOptions& lear
 
 std::vector<matching::MatcherOptions> tableMatchers() {
   std::vector<matching::MatcherOptions> matchers = {
-      {.matcher = "id", .similarity = "cosine"},        {.matcher = "hungarian", .similarity = "l1"},
-      {.matcher = "hungarian", .similarity = "l2"},     {.matcher = "hungarian", .similarity = "cosine"},
-      {.matcher = "clear", .similarity = "overlap"},    {.matcher = "clear", .similarity = "cosine"},
-      {.matcher = "shoal", .similarity = "discounted"},
+      {.matcher = "id", .similarity = "cosine"},          {.matcher = "hungarian", .similarity = "l1"},
+      {.matcher = "hungarian", .similarity = "l2"},       {.matcher = "hungarian", .similarity = "cosine"},
+      {.matcher = "clear", .similarity = "overlap"},      {.matcher = "clear", .similarity = "cosine"},
+      {.matcher = "incremental", .similarity = "cosine"}, {.matcher = "shoal", .similarity = "discounted"},
   };
   return matchers;
 }
@@ -160,10 +160,10 @@ std::vector<matching::MatcherOptions> tableMatchers() {
 std::string nameOf(const matching::MatcherOptions& m) {
   if (m.matcher == "id") return "ID";
   if (m.matcher == "hungarian") return "Hungarian, " + m.similarity;
-  const std::string known = m.matcher == "clear"   ? "CLEAR, " + m.similarity
-                            : m.matcher == "shoal" ? "Shoal"
-                                                   : "";
-  if (known.empty()) return m.matcher;
+  const std::string known = m.matcher == "clear"         ? "CLEAR, " + m.similarity
+                            : m.matcher == "incremental" ? "Incremental, " + m.similarity
+                            : m.matcher == "components"  ? "Components, " + m.similarity
+                                                         : "Shoal";
   char text[64];
   std::snprintf(text, sizeof text, "%s %.2f", known.c_str(), m.leastSimilarity());
   return text;

@@ -7,9 +7,11 @@
 #include <utility>
 
 #include "shoal/matching/clear.h"
+#include "shoal/matching/connected_components.h"
 #include "shoal/matching/discounted_similarity.h"
 #include "shoal/matching/hungarian.h"
 #include "shoal/matching/id_matching.h"
+#include "shoal/matching/incremental_hungarian.h"
 #include "shoal/matching/shoal_matching.h"
 
 namespace shoal::matching {
@@ -17,10 +19,11 @@ namespace {
 
 constexpr const char* kDiscounted = "discounted";
 
-Clustering clear(const AssociationGraph& graph, bool distinct) {
-  ClearOptions options;
-  options.distinct = distinct;
-  return rectify(graph, options);
+Clustering matchGraph(const AssociationGraph& graph, const MatcherOptions& options) {
+  if (options.matcher == "components") return matchByComponents(graph);
+  ClearOptions clear;
+  clear.distinct = options.keepsOwnApart();
+  return rectify(graph, clear);
 }
 
 // Matches the topics that have words; each other topic gets a label of its own.
@@ -47,16 +50,15 @@ void check(const MatcherOptions& options) {
   if (std::find(names.begin(), names.end(), options.matcher) == names.end()) {
     std::string built;
     for (const std::string& name : names) built += (built.empty() ? "" : ", ") + name;
-    const bool planned = options.matcher == "incremental";
-    throw std::invalid_argument("matcher \"" + options.matcher +
-                                (planned ? "\" is not built yet" : "\" is unknown") +
-                                "; built are: " + built);
+    throw std::invalid_argument("matcher \"" + options.matcher + "\" is unknown; built are: " + built);
   }
   const bool discounts = options.similarity == kDiscounted;
+  const bool on_graph = options.matcher == "clear" || options.matcher == "components";
   if (!discounts) similarityNamed(options.similarity);
-  if (discounts && !usesSigma(options.matcher)) {
-    throw std::invalid_argument("matcher \"" + options.matcher +
-                                "\" compares topics two by two; \"discounted\" is for: clear, shoal");
+  if (discounts && !on_graph && options.matcher != "shoal") {
+    throw std::invalid_argument(
+        "matcher \"" + options.matcher +
+        "\" compares topics two by two; \"discounted\" is for: clear, components, shoal");
   }
   if (!discounts && options.matcher == "shoal") {
     throw std::invalid_argument("matcher \"shoal\" compares by \"discounted\", got similarity \"" +
@@ -66,21 +68,29 @@ void check(const MatcherOptions& options) {
   if (!(sigma >= 1e-9 && sigma <= 1.0)) {
     throw std::invalid_argument("sigma must lie in [1e-9, 1], got " + std::to_string(sigma));
   }
-  if (!options.keepsOwnApart() && !usesSigma(options.matcher)) {
+  if (!options.keepsOwnApart() && !mergesOwn(options.matcher) && options.matcher != "clear") {
     throw std::invalid_argument(
         "matcher \"" + options.matcher +
-        "\" keeps the labels of one robot apart; merging them is built for: clear, shoal");
+        "\" keeps the labels of one robot apart; merging them is built for: clear, components, shoal");
+  }
+  if (options.keepsOwnApart() && options.matcher == "components") {
+    throw std::invalid_argument(
+        "matcher \"components\" joins all that edges join; the labels of one robot stay apart with: id, "
+        "hungarian, incremental, clear, shoal");
   }
 }
+
+bool mergesOwn(std::string_view matcher) { return matcher == "components" || matcher == "shoal"; }
 
 double MatcherOptions::leastSimilarity() const { return sigma.value_or(usualSigma(matcher)); }
 
 const std::vector<std::string>& matcherNames() {
-  static const std::vector<std::string> names{"id", "hungarian", "clear", "shoal"};
+  static const std::vector<std::string> names{"id",         "hungarian", "incremental",
+                                              "components", "clear",     "shoal"};
   return names;
 }
 
-bool usesSigma(std::string_view matcher) { return matcher == "clear" || matcher == "shoal"; }
+bool usesSigma(std::string_view matcher) { return matcher != "id" && matcher != "hungarian"; }
 
 std::string usualSimilarity(std::string_view matcher) {
   if (matcher == "hungarian") return "l2";
@@ -108,21 +118,23 @@ Clustering match(const DescriptorSet& topics, const MatcherOptions& options) {
     const double sigma = options.leastSimilarity();
     if (options.matcher == "shoal") return matchShoal(worded, sigma, distinct);
     if (options.similarity == kDiscounted) {
-      return clear(associationGraph(worded, discountedSimilarity(worded), sigma, !distinct), distinct);
+      return matchGraph(associationGraph(worded, discountedSimilarity(worded), sigma, !distinct), options);
     }
     const Similarity similarity = similarityNamed(options.similarity);
     if (options.matcher == "hungarian") return matchSequentially(worded, similarity);
-    return clear(associationGraph(worded, similarity, sigma, !distinct), distinct);
+    if (options.matcher == "incremental") return matchIncrementally(worded, similarity, sigma);
+    return matchGraph(associationGraph(worded, similarity, sigma, !distinct), options);
   });
 }
 
 Clustering match(const AssociationGraph& graph, const MatcherOptions& options) {
   check(options);
-  if (options.matcher != "clear") {
-    throw std::invalid_argument("matcher \"" + options.matcher +
-                                "\" looks at the topics themselves and cannot match a graph; \"clear\" can");
+  if (options.matcher != "clear" && options.matcher != "components") {
+    throw std::invalid_argument(
+        "matcher \"" + options.matcher +
+        "\" looks at the topics themselves and cannot match a graph; \"clear\" and \"components\" can");
   }
-  return clear(graph, options.keepsOwnApart());
+  return matchGraph(graph, options);
 }
 
 }  // namespace shoal::matching

@@ -13,24 +13,28 @@
 
 namespace shoal::matching {
 
+/// Whether a matcher may give two topics of one robot one label, unless told: "components" and "shoal" do.
+bool mergesOwn(std::string_view matcher);
+
 /// What decides a match. All of it changes the answer.
 struct MatcherOptions {
-  std::string matcher = "clear";      ///< one of matcherNames()
-  std::string similarity = "cosine";  ///< one of similarityNames(), or "discounted" with "clear" and "shoal"
+  std::string matcher = "clear";  ///< one of matcherNames()
+  std::string similarity =
+      "cosine";  ///< one of similarityNames(), or "discounted": "clear", "components", "shoal"
   std::optional<double> sigma = {};   ///< least similarity of a match, in [1e-9, 1]; none: usualSigma()
-  std::optional<bool> distinct = {};  ///< labels of one robot stay apart; none: all but "shoal" keep them so
+  std::optional<bool> distinct = {};  ///< labels of one robot stay apart; none: mergesOwn()
 
   double leastSimilarity() const;
-  bool keepsOwnApart() const { return distinct.value_or(matcher != "shoal"); }
+  bool keepsOwnApart() const { return distinct.value_or(!mergesOwn(matcher)); }
 };
 
 /// @throws std::invalid_argument naming the option that is wrong or not built, and what would be right.
 void check(const MatcherOptions& options);
 
-/// Matchers that are built: "id", "hungarian", "clear", "shoal".
+/// Matchers that are built: "id", "hungarian", "incremental", "components", "clear", "shoal".
 const std::vector<std::string>& matcherNames();
 
-/// Whether a matcher decides by sigma: "clear" and "shoal" do.
+/// Whether a matcher decides by sigma: all but "id" and "hungarian" do.
 bool usesSigma(std::string_view matcher);
 
 /// The similarity that goes with a matcher: "l2" with "hungarian" and "cosine" else, as in the paper's
@@ -51,8 +55,8 @@ std::optional<double> parseSigma(const std::string& text);
 /// @throws std::invalid_argument naming the option or the descriptor that is wrong, and what would be right.
 Clustering match(const DescriptorSet& topics, const MatcherOptions& options);
 
-/// The same on an association graph whose edges are given. Only matchers that look at nothing else ("clear")
-/// can do this; others are refused by name.
+/// The same on an association graph whose edges are given. Only matchers that look at nothing else
+/// ("clear", "components") can do this; others are refused by name.
 Clustering match(const AssociationGraph& graph, const MatcherOptions& options);
 
 }  // namespace shoal::matching

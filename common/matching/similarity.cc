@@ -9,6 +9,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "shoal/matching/fixed_log.h"
+
 namespace shoal::matching {
 namespace {
 
@@ -44,8 +46,17 @@ std::optional<double> ifEmpty(const Descriptor& a, const Descriptor& b) {
   return std::nullopt;
 }
 
-constexpr std::array<std::pair<std::string_view, Similarity>, 4> kSimilarities{
-    {{"cosine", &cosine}, {"overlap", &overlap}, {"l1", &l1}, {"l2", &l2}}};
+// x 2^50 as an integer: division, square root and rounding are the same wherever arithmetic is IEEE's.
+int64_t scaled(double x) { return std::llround(x * 0x1p50); }
+
+double share(Wide weight, int64_t sum) { return static_cast<double>(weight) / static_cast<double>(sum); }
+
+constexpr std::array<std::pair<std::string_view, Similarity>, 6> kSimilarities{{{"cosine", &cosine},
+                                                                                {"overlap", &overlap},
+                                                                                {"l1", &l1},
+                                                                                {"l2", &l2},
+                                                                                {"hellinger", &hellinger},
+                                                                                {"js", &jensenShannon}}};
 
 }  // namespace
 
@@ -95,6 +106,35 @@ double l2(const Descriptor& a, const Descriptor& b) {
     squares += difference * difference;
   });
   return nano(1.0 - std::sqrt(0.5 * squares));
+}
+
+double hellinger(const Descriptor& a, const Descriptor& b) {
+  if (const auto value = ifEmpty(a, b)) return *value;
+  const int64_t total_a = total(a);
+  const int64_t total_b = total(b);
+  Wide squares = 0;
+  zip(a, b, [&](Wide x, Wide y) {
+    const Wide difference = scaled(std::sqrt(share(x, total_a))) - scaled(std::sqrt(share(y, total_b)));
+    squares += difference * difference;
+  });
+  return nano(1.0 - std::sqrt(static_cast<double>(squares) * 0x1p-101));
+}
+
+double jensenShannon(const Descriptor& a, const Descriptor& b) {
+  if (const auto value = ifEmpty(a, b)) return *value;
+  const int64_t total_a = total(a);
+  const int64_t total_b = total(b);
+  // p log2 p, and 0 where p is.
+  const auto plogp = [](int64_t p) { return p == 0 ? Wide{0} : Wide{p} * fixedLog2(p); };
+  Wide twice =
+      0;  // Σ (a + b) times the entropy of the choice between a and b, which is 0 unless both are there
+  zip(a, b, [&](Wide x, Wide y) {
+    if (x == 0 || y == 0) return;
+    const int64_t p = scaled(share(x, total_a));
+    const int64_t q = scaled(share(y, total_b));
+    twice += plogp(p + q) - plogp(p) - plogp(q);
+  });
+  return nano(static_cast<double>(twice) * 0x1p-51 / static_cast<double>(int64_t{1} << kLogBits));
 }
 
 bool reaches(double similarity, double sigma) {

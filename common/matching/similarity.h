@@ -30,10 +30,17 @@ double l1(const Descriptor& a, const Descriptor& b);
 /// 1 - sqrt(½ Σ (a - b)²). One minus this is the cost of the paper's sequential Hungarian.
 double l2(const Descriptor& a, const Descriptor& b);
 
+/// 1 - sqrt(½ Σ (√a - √b)²), one minus the Hellinger distance.
+double hellinger(const Descriptor& a, const Descriptor& b);
+
+/// 1 - ½ Σ (a log2 (a/m) + b log2 (b/m)) with m = (a + b) / 2, one minus the Jensen-Shannon divergence in
+/// bits.
+double jensenShannon(const Descriptor& a, const Descriptor& b);
+
 /// Whether two topics of this similarity are joined by an edge: similarity >= sigma in units of 1e-9.
 bool reaches(double similarity, double sigma);
 
-/// Similarities that are built: "cosine", "overlap", "l1", "l2".
+/// Similarities that are built: "cosine", "overlap", "l1", "l2", "hellinger", "js".
 const std::vector<std::string>& similarityNames();
 
 /// @throws std::invalid_argument for a name that is not among similarityNames(), listing these.

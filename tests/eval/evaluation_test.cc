@@ -52,10 +52,9 @@ TEST(ScoreMatchersTest, TellsMatchersApart) {
     return std::optional<int>(c.x == 0 || c.x == 3 ? 0 : 1);
   };
   const auto scores = scoreMatchers(run, allMatchers(), truth);
-  ASSERT_EQ(scores.size(), 3u);
+  ASSERT_EQ(scores.size(), 5u);
   EXPECT_LT(scores[0].ami, 0.1);
-  EXPECT_NEAR(scores[1].ami, 1.0, 1e-12);
-  EXPECT_NEAR(scores[2].ami, 1.0, 1e-12);
+  for (size_t m = 1; m < scores.size(); ++m) EXPECT_NEAR(scores[m].ami, 1.0, 1e-12) << m;
 }
 
 // A small reef: three robots, whose truth is what all their frames together say.

@@ -103,7 +103,8 @@ TEST_P(MatcherLaws, RejectsDescriptorsThatAreNone) {
 
 // Only the words decide: topics without any join nothing and change nothing for the others.
 TEST(MatchTest, KeepsTopicsWithoutWordsOutOfIt) {
-  for (const std::string matcher : {"hungarian", "clear", "shoal"}) {
+  for (const std::string matcher : {"hungarian", "incremental", "components", "clear", "shoal"}) {
+    SCOPED_TRACE(matcher);
     const Mission mission = makeMission(4, 9, 0);
     DescriptorSet with_empty = mission.topics;
     for (std::vector<Descriptor>& robot : with_empty.robots) robot.insert(robot.begin(), {99, {}});
@@ -150,6 +151,17 @@ double randIndex(const Clustering& clustering, const Mission& mission) {
   return static_cast<double>(agree) / all;
 }
 
+// A threshold and running means are what the sequential Hungarian lacks.
+TEST(MatchTest, TheIncrementalHungarianBeatsTheSequentialOne) {
+  double incremental = 0, sequential = 0;
+  for (uint64_t seed = 0; seed < 10; ++seed) {
+    const Mission mission = makeMission(8, seed, 40);
+    incremental += randIndex(match(mission.topics, optionsFor("incremental")), mission) / 10;
+    sequential += randIndex(match(mission.topics, optionsFor("hungarian")), mission) / 10;
+  }
+  EXPECT_GT(incremental, sequential);
+}
+
 // The order of the paper, on the mean over missions.
 TEST(MatchTest, ClearBeatsTheSequentialHungarianWhichBeatsIds) {
   double clear = 0, hungarian = 0, id = 0;
@@ -193,7 +205,10 @@ TEST(ParseSigmaTest, ReadsAutoAndNumbers) {
 }
 
 TEST(MatchTest, MatchesAGraphThatIsGiven) {
-  EXPECT_EQ(match(AssociationGraph{{2, 2}, {{0, 3}, {1, 2}}}, {}).label, (std::vector{0, 1, 1, 0}));
+  for (const std::string matcher : {"clear", "components"}) {
+    const Clustering c = match(AssociationGraph{{2, 2}, {{0, 3}, {1, 2}}}, optionsFor(matcher));
+    EXPECT_EQ(c.label, (std::vector{0, 1, 1, 0}));
+  }
 }
 
 void expectRefused(const MatcherOptions& options, const std::vector<std::string>& named) {
@@ -210,28 +225,34 @@ void expectRefused(const MatcherOptions& options, const std::vector<std::string>
 
 TEST(MatchTest, RefusesByNameWhatIsNotBuilt) {
   MatcherOptions options;
-  options.matcher = "incremental";
-  expectRefused(options, {"\"incremental\"", "not built yet", "id", "hungarian", "clear", "shoal"});
   options.matcher = "clera";
-  expectRefused(options, {"\"clera\"", "unknown", "clear"});
+  expectRefused(options,
+                {"\"clera\"", "unknown", "id", "hungarian", "incremental", "components", "clear", "shoal"});
   options = {};
-  options.similarity = "hellinger";
-  expectRefused(options, {"\"hellinger\"", "cosine"});
-  options = optionsFor("hungarian");
-  options.similarity = "discounted";
-  expectRefused(options, {"\"hungarian\"", "\"discounted\"", "clear, shoal"});
+  options.similarity = "jaccard";
+  expectRefused(options, {"\"jaccard\"", "cosine"});
+  for (const std::string name : {"hungarian", "incremental"}) {
+    options = optionsFor(name);
+    options.similarity = "discounted";
+    expectRefused(options, {"\"" + name + "\"", "\"discounted\"", "clear, components, shoal"});
+  }
+  options = optionsFor("components");
+  options.distinct = true;
+  expectRefused(options, {"\"components\"", "apart"});
   options = optionsFor("shoal");
   options.similarity = "cosine";
   expectRefused(options, {"\"shoal\"", "\"discounted\"", "\"cosine\""});
-  options = optionsFor("id");
-  options.distinct = false;
-  expectRefused(options, {"\"id\"", "clear"});
+  for (const std::string name : {"id", "incremental"}) {
+    options = optionsFor(name);
+    options.distinct = false;
+    expectRefused(options, {"\"" + name + "\"", "clear"});
+  }
   for (const double sigma : {0.0, -1.0, 1.5, std::numeric_limits<double>::quiet_NaN()}) {
     options = {};
     options.sigma = sigma;
     expectRefused(options, {"sigma"});
   }
-  for (const std::string name : {"id", "hungarian", "shoal"}) {
+  for (const std::string name : {"id", "hungarian", "incremental", "shoal"}) {
     EXPECT_THROW(match(AssociationGraph{{1, 1}, {{0, 1}}}, optionsFor(name)), std::invalid_argument);
   }
 }

@@ -31,6 +31,8 @@ Descriptor randomDescriptor(Random& random, int vocabulary, int64_t largest) {
 //   cosine  3 / (sqrt(10) sqrt(2))
 //   overlap min(.75, .5) = .5       l1  1 - (.25 + .25 + .5) / 2 = .5
 //   l2      1 - sqrt((.0625 + .0625 + .25) / 2)
+//   hellinger 1 - sqrt(1 - Σ √(a b)), where Σ √(a b) = √(.75 · .5)
+//   js      only word 0 is shared, .75 and .5, a choice of .6 and .4: -½ (.75 log2 .6 + .5 log2 .4)
 TEST(SimilarityTest, HasTheValuesWorkedByHand) {
   const Descriptor a = descriptor({{0, 3}, {1, 1}});
   const Descriptor b = descriptor({{0, 1}, {2, 1}});
@@ -38,6 +40,8 @@ TEST(SimilarityTest, HasTheValuesWorkedByHand) {
   EXPECT_DOUBLE_EQ(overlap(a, b), .5);
   EXPECT_DOUBLE_EQ(l1(a, b), .5);
   EXPECT_NEAR(l2(a, b), 1.0 - std::sqrt(.1875), 1e-9);
+  EXPECT_NEAR(hellinger(a, b), 1.0 - std::sqrt(1.0 - std::sqrt(.375)), 1e-9);
+  EXPECT_NEAR(jensenShannon(a, b), -.375 * std::log2(.6) - .25 * std::log2(.4), 1e-9);
 }
 
 // The definitions, in floating point over dense vectors.
@@ -52,7 +56,7 @@ TEST(SimilarityTest, AgreesWithTheDefinitions) {
     double sum_x = 0, sum_y = 0;
     for (const auto& e : a.entries) sum_x += x[static_cast<size_t>(e.word)] = static_cast<double>(e.weight);
     for (const auto& e : b.entries) sum_y += y[static_cast<size_t>(e.word)] = static_cast<double>(e.weight);
-    double xy = 0, xx = 0, yy = 0, shared = 0, apart = 0, squares = 0;
+    double xy = 0, xx = 0, yy = 0, shared = 0, apart = 0, squares = 0, roots = 0, divergence = 0;
     for (size_t v = 0; v < x.size(); ++v) {
       const double p = x[v] / sum_x;
       const double q = y[v] / sum_y;
@@ -62,11 +66,16 @@ TEST(SimilarityTest, AgreesWithTheDefinitions) {
       shared += std::min(p, q);
       apart += std::abs(p - q);
       squares += (p - q) * (p - q);
+      roots += std::sqrt(p * q);
+      if (p > 0) divergence += .5 * p * std::log2(2 * p / (p + q));
+      if (q > 0) divergence += .5 * q * std::log2(2 * q / (p + q));
     }
     EXPECT_NEAR(cosine(a, b), xy / std::sqrt(xx * yy), 1e-9);
     EXPECT_NEAR(overlap(a, b), shared, 1e-9);
     EXPECT_NEAR(l1(a, b), 1.0 - apart / 2.0, 1e-9);
     EXPECT_NEAR(l2(a, b), 1.0 - std::sqrt(squares / 2.0), 1e-9);
+    EXPECT_NEAR(hellinger(a, b), 1.0 - std::sqrt(1.0 - roots), 1e-9);
+    EXPECT_NEAR(jensenShannon(a, b), 1.0 - divergence, 1e-9);
   }
 }
 

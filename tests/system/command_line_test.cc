@@ -87,7 +87,6 @@ TEST(LaunchTest, NamesTheOptionThatIsWrong) {
 TEST(LaunchTest, RefusesByNameWhatIsNotBuiltYet) {
   const std::string fly = "launch --world reef:sparse --out " + temporaryFolder() + "/run ";
   expectRefusal(fly + "--kill-plan plan.toml", "--kill-plan is not built yet");
-  expectRefusal(fly + "--matcher incremental", "not built yet");
   expectRefusal(fly + "--profile best", "--profile best is not built yet");
 }
 

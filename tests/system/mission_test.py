@@ -153,7 +153,7 @@ class Mission(unittest.TestCase):
         scores = ask("evaluate", "--run", self.a, "--world", "reef:tuning")
         check_schema("evaluate", scores)
         self.assertEqual(scores, self.summary["scores"])
-        self.assertEqual(set(scores["matchers"]), {"id", "hungarian", "clear"})
+        self.assertEqual(set(scores["matchers"]), {"id", "hungarian", "incremental", "clear", "shoal"})
         self.assertEqual(set(ask("evaluate", "--run", self.a, "--world", "reef:tuning", "--matcher", "id")["matchers"]), {"id"})
 
     def test_run_and_recording_give_the_same_answers(self):
