@@ -201,7 +201,7 @@ TEST(RunMatchTest, RejectsBadContentInOneLine) {
       {R"({"vocabulary":5,"robots":[],"sigma":"much"})", "sigma"},
       {R"({"vocabulary":5,"robots":[],"sigma":1.5})", "sigma"},
       {R"({"vocabulary":5,"robots":[],"sigma":[]})", "sigma"},
-      {R"({"vocabulary":5,"robots":[],"similarity":"hellinger"})", "hellinger"},
+      {R"({"vocabulary":5,"robots":[],"similarity":"jaccard"})", "jaccard"},
       {R"({"vocabulary":5,"robots":[],"matcher":"clera"})", "unknown"},
   };
   for (const Bad& bad : cases) {
@@ -216,8 +216,8 @@ TEST(RunMatchTest, RejectsBadContentInOneLine) {
 
 TEST(RunMatchTest, RejectsBadOptionsBeforeItReads) {
   MatchFileOptions matcher, similarity, sigma, word;
-  matcher.matcher = "incremental";
-  similarity.similarity = "hellinger";
+  matcher.matcher = "clera";
+  similarity.similarity = "jaccard";
   sigma.sigma = "1.5";
   word.sigma = "0.75x";
   for (const MatchFileOptions& flags : {matcher, similarity, sigma, word}) {
@@ -226,6 +226,15 @@ TEST(RunMatchTest, RejectsBadOptionsBeforeItReads) {
     EXPECT_EQ(outcome.out, "");
     EXPECT_EQ(outcome.err.find('\n'), outcome.err.size() - 1);
   }
+}
+
+TEST(RunMatchTest, MatchesAGraphByItsComponentsWhenAsked) {
+  MatchFileOptions flags;
+  flags.matcher = "components";
+  flags.json = true;
+  const Outcome outcome = run(R"({"counts":[1,1,2],"edges":[[0,1],[1,2]]})", flags);
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.json()["labels"], (std::vector{0, 0, 0, 1}));
 }
 
 TEST(RunMatchTest, RefusesMatchersOfWordsForAGraph) {
