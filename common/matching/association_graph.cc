@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "shoal/matching/cosine_neighbours.h"
+
 namespace shoal::matching {
 namespace {
 
@@ -31,6 +33,22 @@ AssociationGraph graphOf(const DescriptorSet& topics, const std::vector<const De
     for (size_t j = i + 1; j < all.size(); ++j) {
       if (all[j]->entries.empty() || (!own_pairs && owner[i] == owner[j])) continue;
       if (areAlike(i, j)) graph.edges.push_back({static_cast<int>(i), static_cast<int>(j)});
+    }
+  }
+  return graph;
+}
+
+// The same edges as by comparing all pairs, in a fraction of the time.
+AssociationGraph cosineGraph(const DescriptorSet& topics, const std::vector<const Descriptor*>& all,
+                             bool own_pairs, double sigma) {
+  AssociationGraph graph;
+  for (const std::vector<Descriptor>& robot : topics.robots) {
+    graph.num_topics.push_back(static_cast<int>(robot.size()));
+  }
+  const std::vector<int> owner = owners(graph);
+  for (const auto& [i, j] : cosineNeighbours(all, sigma)) {
+    if (own_pairs || owner[static_cast<size_t>(i)] != owner[static_cast<size_t>(j)]) {
+      graph.edges.push_back({i, j});
     }
   }
   return graph;
@@ -80,6 +98,7 @@ std::vector<int> owners(const AssociationGraph& graph) {
 AssociationGraph associationGraph(const DescriptorSet& topics, Similarity similarity, double sigma,
                                   bool own_pairs) {
   const std::vector<const Descriptor*> all = inOneRow(topics);
+  if (similarity == &cosine) return cosineGraph(topics, all, own_pairs, sigma);
   return graphOf(topics, all, own_pairs,
                  [&](size_t i, size_t j) { return reaches(similarity(*all[i], *all[j]), sigma); });
 }

@@ -39,7 +39,7 @@ std::vector<int> owners(const AssociationGraph& graph);
 /// @param topics  valid: check(topics) has passed.
 /// @param sigma   in (0, 1].
 ///
-/// Cost: O(n² V) for n topics of V words.
+/// Cost: O(n² V) for n topics of V words; cosine() by cosineNeighbours(), for sparse ones a fraction of it.
 AssociationGraph associationGraph(const DescriptorSet& topics, Similarity similarity, double sigma,
                                   bool own_pairs = false);
 
