@@ -81,7 +81,8 @@ void MissionState::hear(const comms::Packet& packet, comms::Stats& stats) {
         return stats.countRejected("too many nodes");
       }
       wire::Heartbeat& held = heartbeats_[channel->node];
-      if (heartbeat->time >= held.time) held = *heartbeat;
+      const auto age = [](const wire::Heartbeat& h) { return std::pair(h.epoch, h.time); };
+      if (age(*heartbeat) >= age(held)) held = *heartbeat;
       latest_ = std::max(latest_, heartbeat->time);
       return;
     }

@@ -9,6 +9,7 @@
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <set>
 #include <stdexcept>
@@ -17,6 +18,7 @@
 #include <spdlog/spdlog.h>
 
 #include "operator_console/finish_run.h"
+#include "operator_console/kill_plan.h"
 #include "operator_console/log_check.h"
 #include "operator_console/mission_commands.h"
 #include "operator_console/mission_watch.h"
@@ -90,8 +92,9 @@ void prepareFolder(const LaunchOptions& options) {
 
 class Mission {
  public:
-  explicit Mission(const LaunchOptions& options)
+  Mission(const LaunchOptions& options, std::vector<KillStep> plan)
       : options_(options),
+        plan_(std::move(plan)),
         bus_(options.lcm_url),
         watch_(options.mission, options.num_robots, options.budget),
         started_(Clock::now()) {}
@@ -103,6 +106,9 @@ class Mission {
   void startAll();
   void turn();
   void checkEnded(const Ended& ended);
+  void followPlan();
+  bool isDue(const KillStep& step) const;
+  std::vector<std::string> notBack() const;
   template <typename Done>
   bool turnUntil(Clock::duration limit, Done&& done);
   std::vector<std::string> settle();
@@ -113,6 +119,9 @@ class Mission {
   void stopLogger();
 
   LaunchOptions options_;
+  std::vector<KillStep> plan_;            // still to come
+  std::map<world::RobotId, int> epochs_;  // of robots that began anew
+  std::set<std::string> crashing_;        // killed by the plan, not gone yet
   comms::LcmBus bus_;
   MissionWatch watch_;
   Supervisor children_;
@@ -127,6 +136,7 @@ void Mission::turn() {
   bus_.receive(50, [this](const comms::Packet& packet) { watch_.hear(packet); });
   if (stopSignal() != 0) throw Interrupted{stopSignal()};
   for (const Ended& ended : children_.reap()) checkEnded(ended);
+  followPlan();
   if (const auto other = watch_.otherMission()) {
     throw Failed("another mission (" + std::to_string(*other) + ") is heard on " + options_.lcm_url);
   }
@@ -136,7 +146,56 @@ void Mission::turn() {
                std::chrono::duration<double>(Clock::now() - started_).count(), doing_, &watch_.nodes()});
 }
 
+// Kills and restarts who is due, each robot one step after the other.
+void Mission::followPlan() {
+  std::set<world::RobotId> looked_at;
+  std::erase_if(plan_, [&](const KillStep& step) {
+    if (!looked_at.insert(step.robot).second || !isDue(step)) return false;
+    const std::string name = world::name(step.robot);
+    if (step.restart) {
+      const int epoch = ++epochs_[step.robot];
+      // Its clock goes on: two lives in the same mission time would both spend its budget.
+      const double start_s = std::max(step.at_s, watch_.lastSentAt(name));
+      spdlog::info("{} begins anew at {:.1f} s, as planned", name, start_s);
+      children_.start(robotCommand(options_, number(step.robot), epoch, start_s));
+    } else {
+      spdlog::info("{} is killed at {:.1f} s, as planned", name, watch_.lastSentAt(name));
+      crashing_.insert(name);
+      children_.signal(name, SIGKILL);
+    }
+    return true;
+  });
+}
+
+// A robot is killed by its own clock, and comes back by that of who is furthest; or at once when everybody
+// else has landed, for then there is nothing to wait for.
+bool Mission::isDue(const KillStep& step) const {
+  const std::string name = world::name(step.robot);
+  if (!step.restart) {
+    const auto heard = watch_.nodes().find(name);
+    const auto epoch = epochs_.find(step.robot);
+    return heard != watch_.nodes().end() &&
+           heard->second.epoch == (epoch == epochs_.end() ? 0 : epoch->second) &&
+           heard->second.time.seconds() >= step.at_s;
+  }
+  if (children_.isRunning(name)) return false;
+  return watch_.missionTime() >= step.at_s || watch_.allLanded(name);
+}
+
+// Robots that began anew and were not heard since.
+std::vector<std::string> Mission::notBack() const {
+  std::vector<std::string> names;
+  for (const auto& [robot, epoch] : epochs_) {
+    const auto heard = watch_.nodes().find(world::name(robot));
+    if (heard == watch_.nodes().end() || heard->second.epoch != epoch) {
+      names.push_back(world::name(robot) + " was not heard since it began anew");
+    }
+  }
+  return names;
+}
+
 void Mission::checkEnded(const Ended& ended) {
+  if (crashing_.erase(ended.name) > 0) return;
   if (may_end_.contains(ended.name) && ended.inGoodOrder()) return;
   std::string message = ended.name + " " + ended.how() + (may_end_.contains(ended.name) ? "" : " too early");
   const auto lines = lastLines(ended.log, 10);
@@ -188,7 +247,8 @@ std::vector<std::string> Mission::settle() {
   auto changed = Clock::now();
   while (true) {
     turn();
-    const bool landed = watch_.allLanded();
+    if (!plan_.empty()) changed = Clock::now();  // something is to come
+    const bool landed = watch_.allLanded() && plan_.empty() && notBack().empty();
     if (landed) doing_ = "landed; the nodes come to agree";
     if (watch_.progress() != progress) {
       progress = watch_.progress();
@@ -201,6 +261,7 @@ std::vector<std::string> Mission::settle() {
                    std::to_string(static_cast<int>(options_.settle_timeout_s)) + " s");
     }
     if (landed) return watch_.lacking();
+    if (const auto dead = notBack(); !dead.empty()) return dead;
   }
 }
 
@@ -309,6 +370,8 @@ int launch(LaunchOptions options) {
   if (const auto advice = comms::receiveBufferAdvice()) {
     spdlog::warn("the kernel's receive buffers are small, datagrams may be lost; this helps: {}", *advice);
   }
+  std::vector<KillStep> plan;
+  if (!options.kill_plan.empty()) plan = readKillPlan(options.kill_plan, options.num_robots);
   const double carried = comms::readLink(options.link).rate_bytes_per_s;
   if (carried > 0 && (options.budget == 0 || static_cast<double>(options.budget) > carried)) {
     spdlog::warn("a link of {} carries {} bytes per second and loses what is above; --budget {:.0f} fits it",
@@ -317,7 +380,7 @@ int launch(LaunchOptions options) {
   catchStopSignals();
   spdlog::info("mission {}: {} robots over {} on {}, link {}, files in {}", options.mission,
                options.num_robots, options.world, options.lcm_url, options.link, options.out);
-  return Mission(options).run(url_was_given);
+  return Mission(options, std::move(plan)).run(url_was_given);
 }
 
 }  // namespace shoal::console

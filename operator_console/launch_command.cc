@@ -14,7 +14,6 @@ struct Flags {
   LaunchOptions launch;
   std::string sigma = "auto";
   std::string similarity;  // empty: the one that goes with the matcher
-  std::string kill_plan;
 };
 
 }  // namespace
@@ -80,11 +79,11 @@ void addLaunchCommand(CLI::App& app, Action& chosen) {
       ->add_option("--settle-timeout-s", o.settle_timeout_s,
                    "wall seconds without any change after which a landed team is given up")
       ->capture_default_str();
-  command->add_option("--kill-plan", flags->kill_plan, "not built yet");
+  command->add_option("--kill-plan", o.kill_plan,
+                      "robots that crash and begin anew: lines `t_s ROBOT kill|restart`");
   command->callback([&app, &chosen, flags] {
     chosen = [&app, flags] {
       LaunchOptions options = flags->launch;
-      if (!flags->kill_plan.empty()) throw std::invalid_argument("--kill-plan is not built yet");
       options.matcher.sigma = matching::parseSigma(flags->sigma);
       options.matcher.similarity =
           flags->similarity.empty() ? matching::usualSimilarity(options.matcher.matcher) : flags->similarity;

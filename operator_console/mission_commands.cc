@@ -77,13 +77,16 @@ Command operatorCommand(const LaunchOptions& options) {
   return {"OPERATOR", programBeside("fusion_node"), arguments, logPath(options, "OPERATOR")};
 }
 
-Command robotCommand(const LaunchOptions& options, int robot) {
+Command robotCommand(const LaunchOptions& options, int robot, int epoch, double start_s) {
   const std::string name = world::name(world::RobotId{robot});
   std::vector<std::string> arguments = {"--robot", name};
   append(arguments, flightArguments(options));
   append(arguments, linkArguments(options));
   append(arguments, {"--out", options.out, "--linger"});
-  return {name, programBeside("robot_agent"), arguments, logPath(options, name)};
+  if (epoch == 0) return {name, programBeside("robot_agent"), arguments, logPath(options, name)};
+  append(arguments, {"--epoch", std::to_string(epoch), "--start-s", text(start_s)});
+  return {name, programBeside("robot_agent"), arguments,
+          logPath(options, name + "_epoch" + std::to_string(epoch))};
 }
 
 Command singleCommand(const LaunchOptions& options) {

@@ -16,7 +16,9 @@ namespace shoal::console {
 /// lcm-logger into mission.lcmlog, which must not be there.
 Command loggerCommand(const LaunchOptions& options);
 Command operatorCommand(const LaunchOptions& options);
-Command robotCommand(const LaunchOptions& options, int robot);
+/// @param epoch    how often it has begun anew; what it logs goes to logs/RNN_epoch<n>.log when it has.
+/// @param start_s  mission time at which it begins.
+Command robotCommand(const LaunchOptions& options, int robot, int epoch = 0, double start_s = 0);
 /// One robot that flies everybody's shares alone, off the link and as fast as it can.
 Command singleCommand(const LaunchOptions& options);
 

@@ -36,6 +36,8 @@ void MissionWatch::hear(const comms::Packet& packet) {
   // The whole map goes to this host alone, not over the link.
   if (!is_ours || header->kind == wire::MessageKind::kMap) return;
   if (!sent_.contains(channel->node) && sent_.size() >= kMaxNodes) return;
+  int64_t& last_us = last_sent_us_[channel->node];
+  last_us = std::max(last_us, header->time.us);
   sent_.try_emplace(channel->node, budget_).first->second.add(header->time.us, comms::wireSize(packet));
 }
 
@@ -75,8 +77,9 @@ std::vector<std::string> MissionWatch::unheard() const {
   return unheard;
 }
 
-bool MissionWatch::allLanded() const {
-  return std::ranges::all_of(robots_, [this](const std::string& name) {
+bool MissionWatch::allLanded(const std::string& other_than) const {
+  return std::ranges::all_of(robots_, [&](const std::string& name) {
+    if (name == other_than) return true;
     const wire::Heartbeat* robot = find(name);
     return robot && hasLanded(*robot);
   });
@@ -143,6 +146,11 @@ double MissionWatch::missionTime() const {
   world::Timestamp latest;
   for (const auto& [name, node] : nodes()) latest = std::max(latest, node.time);
   return latest.seconds();
+}
+
+double MissionWatch::lastSentAt(const std::string& node) const {
+  const auto found = last_sent_us_.find(node);
+  return found == last_sent_us_.end() ? 0 : static_cast<double>(found->second) * 1e-6;
 }
 
 MissionWatch::WorstWindow MissionWatch::worstWindow() const {

@@ -34,7 +34,8 @@ class MissionWatch {
   /// Robots that have not been heard yet, and OPERATOR when it has not.
   std::vector<std::string> unheard() const;
 
-  bool allLanded() const;
+  /// @param other_than  this robot, which is not asked.
+  bool allLanded(const std::string& other_than = {}) const;
 
   /// What still lacks before the mission is over: every robot has landed, and each node that fuses (OPERATOR
   /// does) holds all that every robot has, has fused that, and has the same map as the others. One line an
@@ -50,6 +51,9 @@ class MissionWatch {
 
   /// Latest mission time in any heartbeat, seconds.
   double missionTime() const;
+
+  /// Mission time at which this node was last heard to send anything, seconds; 0 before it was heard.
+  double lastSentAt(const std::string& node) const;
 
   /// A mission other than ours that was heard.
   std::optional<int32_t> otherMission() const;
@@ -73,6 +77,7 @@ class MissionWatch {
   fusion_node::MissionState state_;  // hears heartbeats alone
   comms::Stats refused_;
   std::map<std::string, comms::WindowMeter> sent_;
+  std::map<std::string, int64_t> last_sent_us_;
 };
 
 }  // namespace shoal::console

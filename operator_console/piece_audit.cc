@@ -30,6 +30,12 @@ int64_t countOf(const mapping::Piece& piece) {
 }  // namespace
 
 void PieceAudit::hear(const mapping::Piece& piece) {
+  int32_t& epoch = epochs_.try_emplace(piece.key.robot, piece.version.epoch).first->second;
+  if (piece.version.epoch < epoch) return;
+  if (piece.version.epoch > epoch) {
+    std::erase_if(pieces_, [&](const auto& heard) { return heard.first.robot == piece.key.robot; });
+    epoch = piece.version.epoch;
+  }
   Heard& heard = pieces_.try_emplace(piece.key, Heard{piece.version, piece.num_parts, {}}).first->second;
   if (piece.version < heard.version) return;
   if (heard.version < piece.version) heard = {piece.version, piece.num_parts, {}};

@@ -28,6 +28,7 @@ class PieceAudit {
     std::map<int32_t, int64_t> cells;  // or topics that are not retired: by part
   };
   std::map<mapping::PieceKey, Heard> pieces_;
+  std::map<world::RobotId, int32_t> epochs_;  // the newest heard of
 };
 
 }  // namespace shoal::console

@@ -69,11 +69,12 @@ Agent::Agent(const AgentOptions& options, world::ObservationSource& source, comm
       explorer_(options.explorer),
       belief_{.robot = options.explorer.robot, .version = {}, .groups = {}, .topics = {}, .cells = {}},
       others_(options.mission, options.matcher),
-      clock_(options.rate),
+      clock_(options.rate, options.start_us),
       sender_(bus, nullptr, [&] {
         comms::SenderOptions sender;
         sender.bytes_per_s = options.budget;
         sender.stamp = [](comms::Packet& packet, int64_t now_us) { wire::stampTime(packet.bytes, {now_us}); };
+        if (options.start_us > 0) sender.resumed_at_us = options.start_us;
         sender.make_heartbeat = [this](int64_t now_us) { return heartbeat(now_us); };
         return sender;
       }()) {}
@@ -95,7 +96,7 @@ void Agent::fly() {
     if (stopRequested()) break;
     const auto observation = source_.next();
     if (!observation) break;
-    passTimeUntil(observation->time.us);
+    passTimeUntil(options_.start_us + observation->time.us);
     takeIn(*observation);
     passTimeUntil(clock_.now());
   }

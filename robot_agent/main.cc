@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <memory>
@@ -28,7 +29,7 @@ struct Flags {
   std::string robot = "R00", source, url = comms::kDefaultUrl, rate = "1", mission = "shoal",
               log_level = "info";
   std::string sigma = "auto", link = "clean", checkpoint, camera, source_url;
-  double source_timeout_s = 0;
+  double source_timeout_s = 0, start_s = 0;
   int64_t source_start_us = -1;
   bool period_given = false;
   bool single = false;
@@ -113,6 +114,7 @@ int run(Flags flags) {
   options.explorer.robot = *id;
   options.mission = fusion_node::missionId(flags.mission);
   options.rate = fusion_node::parseRate(flags.rate);
+  options.start_us = std::llround(flags.start_s * 1e6);
   options.matcher.sigma = matching::parseSigma(flags.sigma);
 
   const comms::LinkModel model = comms::readLink(flags.link);
@@ -211,6 +213,13 @@ int main(int argc, char** argv) {
                                     "for --fuse: cosine, overlap, l1, l2 or discounted");
   app.add_option("--sigma", f.sigma,
                  "for --fuse: least similarity of a match: auto (the matcher's usual) or a number in (0, 1]")
+      ->capture_default_str();
+  app.add_option("--epoch", f.agent.explorer.epoch,
+                 "how often this robot has begun anew: what it said in earlier epochs is void")
+      ->check(CLI::Range(0, 1'000'000))
+      ->capture_default_str();
+  app.add_option("--start-s", f.start_s, "mission time at which the flight begins, after a restart")
+      ->check(CLI::Range(0.0, 1e9))
       ->capture_default_str();
   app.add_flag("--linger", f.agent.linger, "stay after landing until told to stop");
   app.add_flag("--single", f.single, "fly everybody's shares alone, off the link, into --out itself");

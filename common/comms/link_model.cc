@@ -76,7 +76,7 @@ void check(const LinkModel& model) {
   checkShare("loss", model.loss);
   checkTime("bursts.good_s", model.bursts.good_s);
   checkTime("bursts.bad_s", model.bursts.bad_s);
-  if (model.bursts.good_s == 0) refuse("bursts.good_s", "be above 0", 0);
+  if (model.bursts.good_s < 0.001) refuse("bursts.good_s", "be at least 0.001 s", model.bursts.good_s);
   checkShare("bursts.loss", model.bursts.loss);
   checkShare("reordering", model.reordering);
   checkShare("duplication", model.duplication);

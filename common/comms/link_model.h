@@ -14,7 +14,7 @@ namespace shoal::comms {
 /// of the time is bad. Source: E. N. Gilbert, "Capacity of a burst-noise channel", Bell Syst. Tech. J. 39,
 /// 1960; E. O. Elliott, same journal 42, 1963.
 struct Bursts {
-  double good_s = 60;  ///< > 0
+  double good_s = 60;  ///< >= 0.001
   double bad_s = 0;    ///< >= 0; 0 = never bad
   double loss = 1;     ///< of what is sent in a bad time, in [0, 1]
 };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "shoal/mapping/belief_store.h"
 
+#include <algorithm>
+
 #include "shoal/random.h"
 
 namespace shoal::mapping {
@@ -18,6 +20,8 @@ Applied BeliefStore::apply(const Piece& piece) {
     if (std::ssize(sums_) >= limits_.max_robots) return Applied::kRejected;
     sum = sums_.emplace(robot, RobotSum{}).first;
   }
+  if (piece.version.epoch < sum->second.epoch) return Applied::kOld;
+  if (piece.version.epoch > sum->second.epoch) beginEpoch(robot, sum->second, piece.version.epoch);
   auto found = slots_.find(piece.key);
   if (found == slots_.end()) {
     if (sum->second.pieces >= limits_.max_pieces_per_robot) return Applied::kRejected;
@@ -41,6 +45,15 @@ Applied BeliefStore::apply(const Piece& piece) {
   }
   promote(slot, piece.version);
   return Applied::kNew;
+}
+
+// All that the robot said in older epochs goes.
+void BeliefStore::beginEpoch(world::RobotId robot, RobotSum& sum, int32_t epoch) {
+  const auto first =
+      std::ranges::find_if(slots_, [&](const auto& slot) { return slot.first.robot == robot; });
+  const auto last = std::find_if(first, slots_.end(), [&](const auto& s) { return s.first.robot != robot; });
+  slots_.erase(first, last);
+  sum = {0, 0, epoch};
 }
 
 // Part 0 of a newer version has come: it is what the slot now holds, and all that is older goes.

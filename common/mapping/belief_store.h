@@ -13,7 +13,7 @@ namespace shoal::mapping {
 enum class Applied {
   kNew,        ///< the state changed
   kDuplicate,  ///< known already
-  kOld,        ///< a newer version is held
+  kOld,        ///< a newer version is held, or a newer epoch of the robot was heard
   kPending,    ///< of a newer version whose part 0 has not come yet
   kConflict,   ///< same key, version and part, other content: two processes with one robot id. Kept out.
   kRejected    ///< over a limit (too many robots or pieces). Kept out.
@@ -26,8 +26,9 @@ struct StoreLimits {
 };
 
 /// The replicated state: a join of versioned pieces. For each key it holds the newest version whose part 0
-/// has been heard; parts of different versions never mix. The order in which pieces come, and how often, does
-/// not matter.
+/// has been heard; parts of different versions never mix. Of each robot it holds one epoch, the newest it has
+/// heard of: a robot that began anew has given its topics other meanings. The order in which pieces come, and
+/// how often, does not matter.
 class BeliefStore {
  public:
   explicit BeliefStore(StoreLimits limits = {}) : limits_(limits) {}
@@ -62,7 +63,9 @@ class BeliefStore {
   struct RobotSum {
     uint64_t digest = 0;
     int64_t pieces = 0;
+    int32_t epoch = -1;  // the newest heard of
   };
+  void beginEpoch(world::RobotId robot, RobotSum& sum, int32_t epoch);
   void promote(Slot& slot, world::Version version);
 
   StoreLimits limits_;

@@ -81,7 +81,7 @@ TEST(LinkModelTest, NamesTheFileAndTheFieldThatIsWrong) {
       {R"({"rate_bytes_per_s": 0.5})", "\"rate_bytes_per_s\" must be 0 (no limit) or at least 1"},
       {R"({"range_m": -4})", "\"range_m\" must be 0 (no limit) or more, got -4"},
       {R"({"base_m": [1, 2]})", "\"base_m\" must be three numbers"},
-      {R"({"bursts": {"good_s": 0}})", "\"bursts.good_s\" must be above 0"},
+      {R"({"bursts": {"good_s": 0}})", "\"bursts.good_s\" must be at least 0.001 s, got 0"},
       {R"({"bursts": {"bad": 3}})", "\"bursts.bad\" is not known; there are bad_s, good_s, loss"},
       {R"({"bursts": 3})", "\"bursts.\" must be an object"},
       {R"({"lost": 0.1})", "\"lost\" is not known; there are base_m, bursts,"},

@@ -44,6 +44,24 @@ TEST(BeliefStoreTest, AGrownEpochBeatsAnyObservation) {
   EXPECT_EQ(held(store), std::vector{reborn});
 }
 
+// A robot that lost its disk gives its topics other meanings: what it said before is gone, in whatever order
+// things are heard, and although nothing of the new epoch has the old one's name.
+TEST(BeliefStoreTest, ANewEpochVoidsAllThatTheRobotSaidBefore) {
+  Piece reborn = topicPiece(0, 7, 1);
+  reborn.version.epoch = 1;
+  std::vector<Piece> pieces = {topicPiece(0, 0, 900), topicPiece(0, 1, 901, 0, 2),
+                               topicPiece(0, 1, 901, 1, 2), topicPiece(1, 0, 900), reborn};
+  Random random(1);
+  for (int trial = 0; trial < 50; ++trial) {
+    BeliefStore store;
+    for (const Piece& piece : pieces) store.apply(piece);
+    EXPECT_EQ(held(store), (std::vector{reborn, topicPiece(1, 0, 900)}));
+    EXPECT_EQ(store.digestOf(world::RobotId{0}), contentHash(reborn));
+    EXPECT_EQ(store.apply(topicPiece(0, 0, 999)), Applied::kOld);
+    std::ranges::shuffle(pieces, random);
+  }
+}
+
 TEST(BeliefStoreTest, PartZeroAloneIsUsableAndPartsOfTwoVersionsNeverMix) {
   BeliefStore store;
   store.apply(topicPiece(0, 0, 1, 0, 2));

@@ -86,7 +86,6 @@ TEST(LaunchTest, NamesTheOptionThatIsWrong) {
 
 TEST(LaunchTest, RefusesByNameWhatIsNotBuiltYet) {
   const std::string fly = "launch --world reef:sparse --out " + temporaryFolder() + "/run ";
-  expectRefusal(fly + "--kill-plan plan.toml", "--kill-plan is not built yet");
   expectRefusal(fly + "--profile best", "--profile best is not built yet");
 }
 
@@ -96,6 +95,28 @@ TEST(LaunchTest, NamesTheFieldOfALinkThatIsWrong) {
   std::ofstream(folder + "/bay.json") << "{\"loss\": 2}";
   expectRefusal(fly + folder + "/bay.json", "bay.json: \"loss\" must lie in [0, 1], got 2");
   expectRefusal(fly + "string", "string is neither clean, mesh, acoustic or satellite nor a file");
+}
+
+TEST(LaunchTest, NamesTheLineOfAKillPlanThatIsWrong) {
+  const std::string folder = temporaryFolder();
+  const std::string plan = folder + "/plan.txt";
+  const std::string fly = "launch --world reef:sparse --robots 2 --out " + folder + "/run --kill-plan ";
+  expectRefusal(fly + plan, plan);
+  const std::pair<const char*, const char*> cases[] = {
+      {"# nothing\n\n3 R00 crash\n", ":3: \"3 R00 crash\" should be `t_s ROBOT kill` or `t_s ROBOT restart`"},
+      {"soon R00 kill\n", ":1: \"soon R00 kill\" should be"},
+      {"-1 R00 kill\n", ":1: the time must lie in [0, 1000000] s"},
+      {"3 OPERATOR kill\n", ":1: OPERATOR is none of this mission's robots, R00 to R01"},
+      {"3 R02 kill\n5 R02 restart\n", ":1: R02 is none of"},
+      {"3 R00 restart\n", ":1: R00 is restarted and was not killed before"},
+      {"3 R00 kill\n2 R00 restart\n", ":2: R00's times must grow"},
+      {"3 R00 kill\n4 R00 kill\n", ":2: R00 is killed twice without a restart between"},
+      {"3 R00 kill\n", ":1: R00 is killed and never restarted"},
+  };
+  for (const auto& [text, said] : cases) {
+    std::ofstream(plan) << text;
+    expectRefusal(fly + plan, plan + said);
+  }
 }
 
 TEST(LaunchTest, KeepsAFinishedMission) {

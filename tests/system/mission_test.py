@@ -144,6 +144,23 @@ class Mission(unittest.TestCase):
         self.assertGreater(lost, 0.15 * sent)
         self.assertGreater(parted, 0)
 
+    def test_robots_that_crash_come_back_and_the_map_is_the_same(self):
+        plan, out = os.path.join(self.top, "plan.txt"), os.path.join(self.top, "crashes")
+        with open(plan, "w", encoding="utf-8") as file:
+            file.write("# R01 while it flies, R02 when it has landed\n3 R01 kill\n5.5 R01 restart\n8 R02 kill\n12 R02 restart\n")
+        done = launch(out, "--kill-plan", plan, "--record", "--link", "mesh")
+        for robot in ["R01", "R02"]:
+            self.assertRegex(done.stderr, robot + r" is killed at .* as planned")
+            self.assertIn("landed after 6 observations", read(os.path.join(out, "logs", robot + "_epoch1.log")).decode())
+        for path in ["global_map.csv", "labels.csv"] + [f"robots/R0{r}/map.csv" for r in range(3)]:
+            self.assertEqual(read(os.path.join(self.a, path)), read(os.path.join(out, path)), path)
+        log = os.path.join(out, "mission.lcmlog")
+        answer = ask("verify", log)
+        check_schema("verify", answer)
+        self.assertEqual(answer["wrong"], [])
+        self.assertEqual([node["node"] for node in answer["nodes"]], ["OPERATOR", "R00", "R01", "R01", "R02", "R02"])
+        self.assertTrue(ask("replay", log, "--out", os.path.join(self.top, "crashes_again"))["whole"])
+
     def test_another_seed_gives_another_map(self):
         c = os.path.join(self.top, "c")
         run(CONSOLE, "launch", "--world", "reef:tuning", *SIZE[:-1], "8", "--out", c)

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // write_recording FOLDER: a small mission as an LCM log, mission.lcmlog, and what our own code makes of it:
 // state.json and global_map.csv. The log has what a real one may have: parts out of order and twice, old
-// versions, a newer version without its part 0, damaged and foreign messages. everything.lcmlog holds the
-// same, then the most unlike messages there can be; messages.jsonl is what our decoders make of each.
+// versions, an earlier life of a robot, a newer version without its part 0, damaged and foreign messages.
+// everything.lcmlog holds the same, then the most unlike messages there can be; messages.jsonl is what our
+// decoders make of each.
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
@@ -112,6 +113,12 @@ std::vector<comms::Packet> packetsOfRobots(Random& random) {
         }
       }
     }
+  }
+  // An earlier life of R02, with topics of its own.
+  for (Piece& whole : wholePieces(RobotId{2}, 80, random)) {
+    whole.version.epoch = 0;
+    if (whole.key.kind == mapping::PieceKind::kTopic) whole.key.index[0] += 1;
+    for (const Piece& part : cutToFit(whole, kMaxBytes)) packets.push_back(packetOf(part, 80'000'000));
   }
   for (size_t i = 0, n = packets.size(); i < n; i += 5) {  // said twice, later
     packets.push_back(packets[i]);

@@ -63,7 +63,8 @@ class Mission:
             m, _ = unframe(data)
             if kind == "HEARTBEAT":
                 m = decode(data)
-                if m["utime"] >= self.heartbeats.get(node, m)["utime"]:
+                held = self.heartbeats.get(node, m)
+                if (m["epoch"], m["utime"]) >= (held["epoch"], held["utime"]):
                     self.heartbeats[node] = m
             elif kind in ("TOPICS", "BRICK", "CERTAINTY"):
                 require(robot_name(m["robot"]) == node, node, "wrong sender")
@@ -85,15 +86,30 @@ class Mission:
         self._usable = None
         self._digests = {}
 
+    def _epochs(self):
+        """{robot: its newest epoch of which any good part has come}."""
+        said = collections.defaultdict(lambda: collections.defaultdict(list))  # robot -> epoch -> what it said in it
+        for (robot, *_), versions in self._versions.items():
+            for (epoch, _), raw in versions.items():
+                said[robot][epoch].append(raw)
+        newest = {}
+        for robot, epochs in said.items():
+            candidates = sorted(epochs, reverse=True)
+            newest[robot] = next((epoch for epoch in candidates[:-1] if any([self._parts(raw) for raw in epochs[epoch]])),
+                                 candidates[-1])
+        return newest
+
     def pieces(self):
         """The state: for every topic and brick the parts of the newest version whose part 0 has come, ascending.
+        Of each robot one epoch counts, the newest.
 
         [(robot, kind, index, {part: decoded message})]
         """
         if self._usable is None:
             self._usable = []
+            epochs = self._epochs()
             for (robot, kind, index), versions in sorted(self._versions.items(), key=lambda item: item[0]):
-                for version in sorted(versions, reverse=True):
+                for version in sorted((v for v in versions if v[0] == epochs[robot]), reverse=True):
                     parts = self._parts(versions[version])
                     if 0 in parts:
                         self._usable.append((robot, kind, index, dict(sorted(parts.items()))))
