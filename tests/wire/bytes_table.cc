@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// shoal_wire_bytes [RUN...]: what maps and topics take on the wire beside what general coders make of them,
+// as the tables of docs/benchmarks.md. A RUN is the folder of a finished mission. With cjxl (libjxl-tools) in
+// the PATH, lossless JPEG XL too. No time is measured: run it anywhere.
+#include <zstd.h>
+
+#include <unistd.h>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "label_field.h"
+#include "shoal/mapping/atomic_file.h"
+#include "shoal/mapping/belief_files.h"
+#include "shoal/mapping/belief_pieces.h"
+#include "shoal/mapping/map_files.h"
+#include "shoal/wire/limits.h"
+#include "shoal/wire/piece_codec.h"
+
+namespace {
+
+using namespace shoal;  // NOLINT: a main file
+namespace fs = std::filesystem;
+
+// What a channel like SHOAL_R00_BRICK adds to a message in a datagram: LCM's header, the name, its NUL.
+size_t datagram(const mapping::Piece& part) {
+  const std::string channel =
+      "SHOAL_" + name(part.key.robot) + "_" + std::string(wire::channelKind(wire::kindOf(part)));
+  return wire::encode(part, 1, {}).size() + 8 + channel.size() + 1;
+}
+
+struct Cost {
+  size_t payload = 0;    // bytes of payloads
+  size_t datagrams = 0;  // with fixed fields, channel and LCM's header
+  size_t count = 0;
+};
+
+void add(Cost& cost, const mapping::Piece& whole) {
+  const size_t fixed = std::holds_alternative<mapping::TopicPart>(whole.content) ? 45 : 53;
+  for (const mapping::Piece& part : wire::cutToFit(whole, wire::maxPayload(16))) {
+    cost.payload += wire::encode(part, 1, {}).size() - fixed;
+    cost.datagrams += datagram(part);
+    ++cost.count;
+  }
+}
+
+std::map<std::array<int32_t, 3>, mapping::BrickPart> bricksOf(const std::vector<mapping::BrickCell>& cells) {
+  std::map<std::array<int32_t, 3>, mapping::BrickPart> bricks;
+  for (const auto& c : cells) bricks[mapping::brickOf(c.cell)].cells.push_back(c);  // ascending as cells are
+  return bricks;
+}
+
+Cost costOfBricks(const std::vector<mapping::BrickCell>& cells) {
+  Cost cost;
+  for (const auto& [index, brick] : bricksOf(cells)) {
+    add(cost, {{world::RobotId{0}, mapping::PieceKind::kBrick, index}, {0, 59}, 0, 1, brick});
+  }
+  return cost;
+}
+
+// One byte a column (x, y), from its highest cell; 255 where there is none.
+struct Raster {
+  int width = 0, height = 0;
+  std::vector<uint8_t> pixels;
+};
+
+Raster rasterOf(const std::vector<mapping::BrickCell>& cells) {
+  const auto [x0, x1] = std::ranges::minmax(cells, {}, [](const auto& c) { return c.cell.x; });
+  const auto [y0, y1] = std::ranges::minmax(cells, {}, [](const auto& c) { return c.cell.y; });
+  Raster raster{x1.cell.x - x0.cell.x + 1, y1.cell.y - y0.cell.y + 1, {}};
+  raster.pixels.assign(static_cast<size_t>(raster.width) * static_cast<size_t>(raster.height), 255);
+  for (const auto& c : cells)  // ascending: the highest of a column last
+    raster.pixels[static_cast<size_t>((c.cell.y - y0.cell.y) * raster.width + c.cell.x - x0.cell.x)] =
+        static_cast<uint8_t>(number(c.topic));
+  return raster;
+}
+
+size_t zstd19(const std::vector<uint8_t>& bytes) {
+  std::vector<uint8_t> out(ZSTD_compressBound(bytes.size()));
+  const size_t size = ZSTD_compress(out.data(), out.size(), bytes.data(), bytes.size(), 19);
+  if (ZSTD_isError(size) != 0) throw std::runtime_error(ZSTD_getErrorName(size));
+  return size;
+}
+
+// Bytes of the losslessly coded picture; 0 without cjxl.
+size_t jpegXl(const Raster& raster) {
+  const fs::path folder = fs::temp_directory_path() / ("shoal_wire_bytes_" + std::to_string(getpid()));
+  fs::create_directories(folder);
+  const std::string in = (folder / "map.pgm").string(), out = (folder / "map.jxl").string();
+  {
+    std::ofstream file(in, std::ios::binary);
+    file << "P5\n" << raster.width << ' ' << raster.height << "\n255\n";
+    file.write(reinterpret_cast<const char*>(raster.pixels.data()),
+               static_cast<std::streamsize>(raster.pixels.size()));
+  }
+  const int status = std::system(("cjxl " + in + " " + out + " -d 0 -e 9 >/dev/null 2>&1").c_str());
+  const size_t size = status == 0 ? fs::file_size(out) : 0;
+  fs::remove_all(folder);
+  return size;
+}
+
+// Ideal code length, bytes, of numbers whose distribution is learned on the way: a number seen c times among
+// n so far, d of them distinct, costs -log2(c / (n + d)); a new one -log2(d / (n + d)) and Elias' gamma code
+// of it.
+class AdaptiveEntropy {
+ public:
+  void add(int64_t value) {
+    int64_t& seen = seen_[value];
+    const auto total = static_cast<double>(n_ + std::max<int64_t>(distinct_, 1));
+    bits_ -= std::log2(static_cast<double>(seen > 0 ? seen : std::max<int64_t>(distinct_, 1)) / total);
+    if (seen == 0) {
+      ++distinct_;
+      bits_ += 2 * std::floor(std::log2(static_cast<double>(value + 1))) + 1;
+    }
+    ++seen;
+    ++n_;
+  }
+  double bytes() const { return bits_ / 8; }
+
+ private:
+  std::map<int64_t, int64_t> seen_;
+  int64_t n_ = 0, distinct_ = 0;
+  double bits_ = 0;
+};
+
+struct NamedMap {
+  std::string name;
+  std::vector<mapping::BrickCell> cells;  // ascending; labels below 255 in place of topics
+};
+
+NamedMap synthetic(double speckle) {
+  constexpr int kSide = 500;
+  const auto field = wire::labelField(kSide, 10, speckle);
+  NamedMap map{speckle > 0 ? "500 x 500, 10 labels, 3 % speckle" : "500 x 500, 10 labels, clean", {}};
+  size_t unlike = 0;
+  for (int x = 0; x < kSide; ++x) {
+    for (int y = 0; y < kSide; ++y) {
+      const int label = field[static_cast<size_t>(x * kSide + y)];
+      map.cells.push_back({{x, y, 0}, world::TopicId{label}, {}});
+      if (y > 0) unlike += label != field[static_cast<size_t>(x * kSide + y - 1)] ? 1 : 0;
+    }
+  }
+  std::printf("%s: %.1f %% unlike neighbours\n", map.name.c_str(),
+              100.0 * static_cast<double>(unlike) / (kSide * (kSide - 1)));
+  return map;
+}
+
+double cellSizeOf(const std::string& run) {
+  return nlohmann::json::parse(mapping::readFile(run + "/summary.json")).at("cell_size_m").get<double>();
+}
+
+NamedMap fusedMapOf(const std::string& run) {
+  NamedMap map{fs::path(run).filename().string() + ", fused", {}};
+  std::map<world::GlobalLabel, int32_t> numbers;
+  for (const auto& c : mapping::readGlobalMap(run, world::Grid(cellSizeOf(run))).cells) {
+    const auto next = static_cast<int32_t>(numbers.size());
+    map.cells.push_back({c.cell, world::TopicId{numbers.emplace(c.label, next).first->second}, {}});
+  }
+  if (numbers.size() > 255) throw std::runtime_error(run + ": more than 255 labels");
+  return map;
+}
+
+void printLabels(const NamedMap& map) {
+  const Cost cost = costOfBricks(map.cells);
+  const Raster raster = rasterOf(map.cells);
+  const size_t zstd = zstd19(raster.pixels), jxl = jpegXl(raster);
+  const auto ratio = [](size_t a, size_t b) { return static_cast<double>(a) / static_cast<double>(b); };
+  std::printf("| %s | %zu | %zu | %zu | %zu (%.2f) | %zu | %zu (%.2f) |\n", map.name.c_str(),
+              map.cells.size(), zstd, jxl, cost.payload, ratio(cost.payload, zstd), cost.count,
+              cost.datagrams, ratio(cost.datagrams, zstd));
+}
+
+void printTopics(const std::string& run) {
+  const world::Grid grid(cellSizeOf(run));
+  Cost cost;
+  double ideal = 0;
+  size_t topics = 0, non_zero = 0, float32 = 0;
+  for (const auto& folder : fs::directory_iterator(run + "/robots")) {
+    const auto robot = world::parseRobotId(folder.path().filename().string());
+    const mapping::LocalBelief belief = mapping::readBelief(folder.path(), robot.value(), grid);
+    std::vector<AdaptiveEntropy> of_group(belief.groups.size());
+    for (const auto& topic : belief.topics) {
+      mapping::TopicPart part{topic.created, topic.weight, {}, topic.words};
+      std::map<int32_t, int32_t> counts;
+      for (const auto& [word, count] : topic.words) counts[word] = count;
+      for (size_t g = 0; g < belief.groups.size(); ++g) {
+        const auto& group = belief.groups[g];
+        part.group_sizes.push_back(group.size);
+        float32 += 4 * static_cast<size_t>(group.size);
+        for (int32_t word = group.first; word < group.first + group.size; ++word)
+          of_group[g].add(counts.contains(word) ? counts.at(word) : 0);
+      }
+      ++topics;
+      non_zero += topic.words.size();
+      add(cost,
+          {{*robot, mapping::PieceKind::kTopic, {number(topic.id), 0, 0}}, {0, 59}, 0, 1, std::move(part)});
+    }
+    for (const auto& group : of_group) ideal += group.bytes();
+  }
+  std::printf("| %s | %zu | %zu | %zu | %.0f | %zu (%.2f) | %zu |\n",
+              fs::path(run).filename().string().c_str(), topics, non_zero, float32, ideal, cost.payload,
+              static_cast<double>(cost.payload) / ideal, cost.datagrams);
+}
+
+// CPU milliseconds to encode all bricks, and to decode (and check) them.
+void printTimes(const NamedMap& map) {
+  const auto milliseconds = [](std::clock_t since) {
+    return 1e3 * static_cast<double>(std::clock() - since) / CLOCKS_PER_SEC;
+  };
+  std::vector<mapping::Piece> bricks;
+  for (const auto& [index, brick] : bricksOf(map.cells))
+    bricks.push_back({{world::RobotId{0}, mapping::PieceKind::kBrick, index}, {0, 59}, 0, 1, brick});
+  std::vector<wire::Bytes> messages;
+  const std::clock_t encoding = std::clock();
+  for (const auto& brick : bricks) messages.push_back(wire::encode(brick, 1, {}));
+  const double encode_ms = milliseconds(encoding);
+  const std::clock_t decoding = std::clock();
+  size_t cells = 0;
+  for (const auto& bytes : messages) {
+    const auto piece = wire::decodePiece(wire::MessageKind::kBrick, bytes);
+    cells += std::get<mapping::BrickPart>(piece->content).cells.size();
+  }
+  std::printf("\n%zu cells (%s): encoded in %.0f ms, decoded in %.0f ms of CPU time\n", cells,
+              map.name.c_str(), encode_ms, milliseconds(decoding));
+}
+
+void run(std::span<char*> runs) {
+  const std::vector<NamedMap> fields{synthetic(0), synthetic(0.03)};
+  std::puts("\n| map | cells | zstd -19 | JPEG XL | ours, payloads | datagrams | ours, all |");
+  std::puts("|---|---|---|---|---|---|---|");
+  for (const NamedMap& map : fields) printLabels(map);
+  for (const char* folder : runs) printLabels(fusedMapOf(folder));
+  if (!runs.empty())
+    std::puts(
+        "\n| mission | topics | counts > 0 | float32 | adaptive entropy | ours, payloads | ours, all |");
+  if (!runs.empty()) std::puts("|---|---|---|---|---|---|---|");
+  for (const char* folder : runs) printTopics(folder);
+  printTimes(fields.back());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    run(std::span(argv + 1, static_cast<size_t>(argc - 1)));
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "shoal_wire_bytes: %s\n", error.what());
+    return 1;
+  }
+  return 0;
+}
