@@ -60,6 +60,8 @@ std::string forZsh(const std::string& text) {
   return safe;
 }
 
+std::string similarities() { return joined(matching::similarityNames(), " ") + " discounted"; }
+
 std::string zshFlag(const CLI::Option& option) {
   std::string text = "'" + longName(option) + "[" + forZsh(option.get_description()) + "]";
   if (option.get_items_expected_max() == 0) return text + "'";
@@ -67,7 +69,7 @@ std::string zshFlag(const CLI::Option& option) {
     return text + ":matcher:(" + joined(matching::matcherNames(), " ") + ")'";
   }
   if (longName(option) == "--similarity") {
-    return text + ":similarity:(" + joined(matching::similarityNames(), " ") + ")'";
+    return text + ":similarity:(" + similarities() + ")'";
   }
   return text + ":value:_files'";
 }
@@ -92,7 +94,7 @@ std::string bashCompletion(const CLI::App& app) {
       joined(matching::matcherNames(), " ") +
       "' ;;\n"
       "    --similarity) words='" +
-      joined(matching::similarityNames(), " ") +
+      similarities() +
       "' ;;\n"
       "    completion) words='bash zsh' ;;\n"
       "    *)\n"

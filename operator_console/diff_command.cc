@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -8,6 +9,7 @@
 
 #include "operator_console/asking.h"
 #include "operator_console/command.h"
+#include "operator_console/recorded_mission.h"
 #include "shoal/mapping/diff_answer.h"
 
 namespace shoal::console {
@@ -46,9 +48,10 @@ int diff(const DiffQuestion& q) {
                                 q.after);
   }
   const Where where = whereOf(q.asking);
-  const std::string log = recordingOf(where);
-  const Json d = mapping::diffAnswer(viewOfLogAt(log, before_s, where.matcher), before_s,
-                                     viewOfLogAt(log, after_s, where.matcher), after_s);
+  const auto viewAt = [log = recordingOf(where), matcher = matcherOf(where)](double time_s) {
+    return readRecording(log, matcher, {}, world::Timestamp{std::llround(time_s * 1e6)}).state.view();
+  };
+  const Json d = mapping::diffAnswer(viewAt(before_s), before_s, viewAt(after_s), after_s);
   if (q.asking.json) {
     std::cout << d.dump(2) << '\n';
   } else if (q.csv) {

@@ -2,11 +2,10 @@
 #include "operator_console/mission_sources.h"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
-#include <utility>
 
 #include <spdlog/spdlog.h>
 
@@ -73,17 +72,6 @@ mapping::MissionView viewOfRun(const std::string& dir) {
 
 namespace {
 
-// Which matcher a run's map was made with, when its summary tells.
-matching::MatcherOptions matcherOfRun(const Json& summary, const matching::MatcherOptions& otherwise) {
-  const auto said = summary.find("matching");
-  if (said == summary.end()) return otherwise;
-  matching::MatcherOptions options;
-  said->at("matcher").get_to(options.matcher);
-  said->at("similarity").get_to(options.similarity);
-  if (said->at("sigma").is_number()) options.sigma = said->at("sigma").get<double>();
-  return options;
-}
-
 bool showSameLabels(const mapping::GlobalMap& a, const mapping::GlobalMap& b) {
   return std::ranges::equal(a.cells, b.cells, [](const mapping::GlobalCell& x, const mapping::GlobalCell& y) {
     return x.cell == y.cell && x.label == y.label && x.robot == y.robot;
@@ -92,8 +80,7 @@ bool showSameLabels(const mapping::GlobalMap& a, const mapping::GlobalMap& b) {
 
 Json askRun(const Where& where, const Json& question) {
   mapping::MissionView view = viewOfRun(where.run);
-  const Json summary = readSummary(where.run);
-  mapping::Witness witness{.view = view, .beliefs = {}, .matcher = matcherOfRun(summary, where.matcher)};
+  mapping::Witness witness{.view = view, .beliefs = {}, .matcher = matcherOf(where)};
   std::optional<mapping::BeliefStore> store;  // from the robots' own files, when it is needed
   witness.beliefs = [&]() -> const mapping::BeliefStore& {
     if (store) return *store;
@@ -115,10 +102,20 @@ Json askRun(const Where& where, const Json& question) {
 
 }  // namespace
 
-mapping::MissionView viewOfLogAt(const std::string& path, double until_s,
-                                 const matching::MatcherOptions& matcher) {
-  const world::Timestamp until{std::llround(until_s * 1e6)};
-  return readRecording(path, matcher, {}, until).state.view();
+matching::MatcherOptions matcherOf(const Where& where) {
+  if (where.run.empty()) return where.matcher;
+  const Json summary = readSummary(where.run);
+  const auto said = summary.find("matching");
+  if (said == summary.end()) return where.matcher;  // a run of an older build
+  try {
+    matching::MatcherOptions options;
+    said->at("matcher").get_to(options.matcher);
+    said->at("similarity").get_to(options.similarity);
+    if (!said->at("sigma").is_null()) options.sigma = said->at("sigma").get<double>();
+    return options;
+  } catch (const Json::exception& error) {
+    throw std::runtime_error(where.run + "/summary.json: " + error.what());
+  }
 }
 
 std::string recordingOf(const Where& where) {
@@ -142,9 +139,9 @@ mapping::MissionView viewOf(const Where& where) {
 Json ask(const Where& where, const Json& question) {
   if (!where.node.empty()) return fusion_node::askNode(where.node, question);
   if (!where.run.empty()) return askRun(where, question);
-  const RecordedMission reading = readRecording(where.log, where.matcher);
-  const mapping::MissionView view = reading.state.view();
-  const auto beliefs = [&]() -> const mapping::BeliefStore& { return reading.state.beliefs(); };
+  const RecordedMission recorded = readRecording(where.log, where.matcher);
+  const mapping::MissionView view = recorded.state.view();
+  const auto beliefs = [&]() -> const mapping::BeliefStore& { return recorded.state.beliefs(); };
   return mapping::answer({view, beliefs, where.matcher}, question);
 }
 

@@ -24,17 +24,15 @@ mapping::MissionView viewOfRun(const std::string& dir);
 /// @throws std::runtime_error as viewOfRun() and readRecording(), or when no node answers.
 mapping::MissionView viewOf(const Where& where);
 
-/// The map as a recording held it at mission time `until_s`: what had been sent by then, fused.
-/// @throws std::runtime_error as viewOfLog().
-mapping::MissionView viewOfLogAt(const std::string& path, double until_s,
-                                 const matching::MatcherOptions& matcher);
+/// How the map of a run was matched, as its summary.json says; else what `where` says.
+matching::MatcherOptions matcherOf(const Where& where);
 
 /// The recording to look into for the past: --log, or the mission.lcmlog of --run.
 /// @throws std::runtime_error when there is none: a node keeps no history.
 std::string recordingOf(const Where& where);
 
 /// Answers any question of mapping/questions.h from wherever. What cannot be answered comes back as
-/// {"error": ...}. A finished run is matched as its summary.json says, else as `where` says.
+/// {"error": ...}. The matcher is matcherOf(where).
 nlohmann::ordered_json ask(const Where& where, const nlohmann::ordered_json& question);
 
 }  // namespace shoal::console

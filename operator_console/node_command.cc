@@ -37,8 +37,7 @@ void printNode(const Json& a) {
     fmt::print("it has {} cells; {} were told, the map shows {} of them\n", n["cells"].get<int64_t>(),
                a["cells_told"].get<int64_t>(), a["cells_shown"].get<int64_t>());
     if (!a["told_until_s"].is_null()) {
-      fmt::print("what it told reaches to {:.1f} s, {:.1f} s behind\n", a["told_until_s"].get<double>(),
-                 a["behind_s"].get<double>());
+      fmt::print("what it told was seen until {:.1f} s\n", a["told_until_s"].get<double>());
     }
     fmt::print("{}\n", n["heard_whole"].get<bool>() ? "digests agree: all it has to say was heard"
                                                     : "digests differ: something was not heard yet");

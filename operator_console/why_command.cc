@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -74,7 +75,8 @@ void printDecision(const Json& a) {
 void printWords(const Json& a) {
   for (const Json& group : a["shared_words"]) {
     std::string words;
-    for (const Json& w : group["words"]) {
+    for (size_t i = 0; i < std::min<size_t>(3, group["words"].size()); ++i) {  // as many as fit a line
+      const Json& w = group["words"][i];
       words += fmt::format("{}{} {:.1f}% ({})", words.empty() ? "" : ", ", w["word"].get<int>(),
                            100 * w["share"].get<double>(), w["members"].get<int>());
     }

@@ -9,6 +9,7 @@
 
 #include "shoal/mapping/atomic_file.h"
 #include "shoal/mapping/csv.h"
+#include "shoal/mapping/piece.h"
 
 namespace shoal::mapping {
 namespace {
@@ -23,6 +24,12 @@ world::RobotId toRobot(const std::string& field, const std::string& path) {
   const auto robot = world::parseRobotId(field);
   if (!robot) throw std::runtime_error(path + ": \"" + field + "\" is not a robot; robots are R00, R01, ...");
   return *robot;
+}
+
+// The certainty that was written: steps of 1/63, as they travelled, come back to the last bit.
+float certaintyFrom(double written) {
+  const auto step = static_cast<float>(std::round(written * kCertaintySteps)) / kCertaintySteps;
+  return std::abs(static_cast<double>(step) - written) <= 0.51e-4 ? step : static_cast<float>(written);
 }
 
 }  // namespace
@@ -69,7 +76,7 @@ GlobalMap parseGlobalMap(const std::string& cells_csv, const std::string& labels
     map.cells.push_back({grid.cellOf({toReal(row[0], cells), toReal(row[1], cells), toReal(row[2], cells)}),
                          world::GlobalLabel{static_cast<int32_t>(toInteger(row[3], cells))},
                          toRobot(row[4], cells), fromSeconds(toReal(row[5], cells)),
-                         static_cast<float>(toReal(row[6], cells))});
+                         certaintyFrom(toReal(row[6], cells))});
   }
   std::ranges::sort(map.cells, {}, &GlobalCell::cell);
   const std::string labels = origin + "/labels.csv";

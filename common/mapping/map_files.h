@@ -23,7 +23,8 @@ GlobalMap parseGlobalMap(const std::string& cells_csv, const std::string& labels
                          const std::string& origin);
 
 /// Reads both back (cells and labels; correspondences and digests are not in the files). Times come back to
-/// the millisecond. @throws std::runtime_error naming the file and what is wrong.
+/// the millisecond, certainties in steps of 1/63 exactly. @throws std::runtime_error naming the file and what
+/// is wrong.
 GlobalMap readGlobalMap(const std::string& folder, const world::Grid& grid);
 
 }  // namespace shoal::mapping

@@ -8,6 +8,8 @@
 #include "shoal/mapping/diff_answer.h"
 #include "shoal/mapping/fusion.h"
 #include "shoal/mapping/questions.h"
+#include "shoal/mapping/stacked_topics.h"
+#include "shoal/matching/discounted_similarity.h"
 
 namespace shoal::mapping {
 namespace {
@@ -161,6 +163,23 @@ TEST_F(AnswersTest, WhyTellsHowManyPairsWereOutvoted) {
   EXPECT_EQ(a["pairs"]["across_reaching_sigma"], 2);
   EXPECT_EQ(a["margin"], 0.1);
   EXPECT_EQ(a["closest"]["with"]["robot"], "R02");
+}
+
+// Its means decide: sigma less the mean similarity to the nearest other label.
+TEST_F(AnswersTest, WhySpeaksOfTheMatcherShoalInItsOwnSimilarity) {
+  matcher_ = {.matcher = "shoal", .similarity = "discounted"};
+  view_.map = fuse(store_, matcher_);
+  const StackedTopics stacked = stack(store_);
+  const matching::PairTable table = matching::discountedSimilarity(stacked.descriptors);
+  const Json a = ask({{"query", "why"}, {"label", "4"}});
+  ASSERT_EQ(a["members"].size(), 2u);  // R00/4 and R01/5 have the same words: vertices 0 and 2
+  EXPECT_NEAR(a["members"][0]["nearest"][0]["similarity"], table.at(0, 2) * 1e-9, 1e-6);
+  EXPECT_EQ(a["nearest_label"]["label"], 20006);
+  const double mean = (table.at(0, 3) * 1e-9 + table.at(2, 3) * 1e-9) / 2;
+  EXPECT_NEAR(a["nearest_label"]["mean_similarity"], mean, 1e-6);
+  EXPECT_NEAR(a["margin"], matching::usualSigma("shoal") - mean, 1e-6);
+  EXPECT_EQ(a["sigma"], matching::usualSigma("shoal"));
+  EXPECT_TRUE(a["pairs"].is_null());
 }
 
 TEST_F(AnswersTest, WhyHasNoMarginWhereSigmaDecidesNothing) {

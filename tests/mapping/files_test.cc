@@ -79,6 +79,19 @@ TEST_F(FilesTest, AGlobalMapComesBackAsItWas) {
   EXPECT_EQ(back.labels, map.labels);
 }
 
+TEST(MapFilesTest, CertaintiesComeBackToTheLastBit) {
+  const world::Grid grid(1);
+  GlobalMap map;
+  for (int step = 0; step <= kCertaintySteps; ++step) {
+    map.cells.push_back({{step, 0, 0},
+                         world::GlobalLabel{1},
+                         world::RobotId{0},
+                         {0},
+                         static_cast<float>(step) / kCertaintySteps});
+  }
+  EXPECT_EQ(parseGlobalMap(globalMapCsv(map, grid), labelsCsv(map, grid), grid, "x").cells, map.cells);
+}
+
 TEST(AtAnswerTest, NothingIsAsFarAwayAsNumbersGo) {
   MissionView view;
   view.map.cells.push_back({{0, 0, 0}, world::GlobalLabel{1}, world::RobotId{0}, {0}, 1.f});

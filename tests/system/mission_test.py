@@ -191,6 +191,23 @@ class Mission(unittest.TestCase):
         self.assertEqual(at["cells"], ask("at", first[0], first[1], "--log", log)["cells"])
         self.assertEqual(ask("at", "1e5", "1e5", "--run", self.a)["cells"], [])
 
+    def test_area_why_node_and_diff_are_answered(self):
+        log = os.path.join(self.a, "mission.lcmlog")
+        label = max(ask("labels", "--run", self.a)["labels"], key=lambda row: row["cells"])
+        for question in [("area", str(label["label"])), ("why", str(label["label"])), ("node", "R01")]:
+            answer = ask(*question, "--run", self.a)
+            check_schema(question[0], answer)
+            self.assertEqual(answer, ask(*question, "--log", log), question)
+        area = ask("area", str(label["label"]), "--run", self.a)
+        self.assertAlmostEqual(area["area_m2"], label["area_m2"], places=2)
+        self.assertEqual(sum(patch["cells"] for patch in area["patches"]), label["cells"])
+        why = ask("why", str(label["label"]), "--run", self.a)
+        self.assertEqual(sorted({member["robot"] for member in why["members"]}), label["robots"])
+        diff = ask("diff", "0", "1000000000", "--run", self.a)
+        check_schema("diff", diff)
+        self.assertEqual((diff["cells_before"], diff["cells_after"]), (0, self.summary["cells"]))
+        self.assertEqual(diff["total"]["appeared"], self.summary["cells"])
+
     def test_a_recording_exports_the_very_map(self):
         out = os.path.join(self.top, "from_log.csv")
         run(CONSOLE, "export", "--format", "csv", "--out", out, "--log", os.path.join(self.a, "mission.lcmlog"))
@@ -392,7 +409,11 @@ class ByHand(unittest.TestCase):
             return names == ["R00", "R01", "R02"]
 
         self.wait_for(settled)
-        check_schema("labels", ask("labels", "--node", state))
+        labels = ask("labels", "--node", state)
+        check_schema("labels", labels)
+        for question in [("area", str(labels["labels"][0]["label"])), ("why", str(labels["labels"][0]["label"])),
+                         ("node", "R00"), ("at", "100", "-100")]:
+            check_schema(question[0], ask(*question, "--node", state))
         exported = os.path.join(self.top, "live.csv")
         run(CONSOLE, "export", "--format", "csv", "--out", exported, "--node", state)
         time.sleep(3)  # the two robots hear the last of each other
