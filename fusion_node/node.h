@@ -20,7 +20,7 @@ struct NodeOptions {
   int64_t budget = 2000;   ///< bytes per second of mission time on the link, 0 = unlimited
   double cell_size_m = 1;  ///< edge of a cell, until a robot has said
   double rate = 1.0;       ///< seconds of mission time per wall second; 0 = follow the robots
-  matching::MatcherOptions matcher;
+  matching::MatcherOptions matcher = matching::usualMatcher();
   std::string state_dir;  ///< where questions are answered; empty = nowhere
   std::string out_dir;    ///< where the map's files go at the end; empty = nowhere
 };

@@ -20,7 +20,7 @@ struct LaunchOptions {
   std::string link = "clean";  ///< clean, mesh, acoustic, satellite or a file: docs/link.md
   std::string rate = "max";    ///< mission seconds per wall second, or "max"
   std::string profile = "paper";
-  matching::MatcherOptions matcher;
+  matching::MatcherOptions matcher = matching::usualMatcher();
   double cell_size_m = 0;  ///< 0 = the world's own
   double altitude_m = 0;   ///< 0 = native resolution
   double frame_period_s = 1;

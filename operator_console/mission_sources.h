@@ -14,7 +14,7 @@ namespace shoal::console {
 /// given.
 struct Where {
   std::string node, run, log;
-  matching::MatcherOptions matcher;  ///< with which a recording is fused
+  matching::MatcherOptions matcher = matching::usualMatcher();  ///< with which a recording is fused
 };
 
 /// A finished run, from its files. @throws std::runtime_error naming the file that is missing or broken.

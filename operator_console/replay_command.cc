@@ -13,7 +13,7 @@ namespace {
 
 struct Flags {
   std::string log, out, sigma = "auto", similarity;
-  matching::MatcherOptions matcher;
+  matching::MatcherOptions matcher = matching::usualMatcher();
   bool json = false;
 };
 

@@ -25,7 +25,7 @@ struct AgentOptions {
   int64_t start_us = 0;              ///< mission time at which the flight begins: later after a restart
   double rate = 1.0;                 ///< seconds of mission time per wall second, 0 = as fast as possible
   bool fuse = false;                 ///< hold everybody's beliefs and fuse them too
-  matching::MatcherOptions matcher;  ///< for `fuse`
+  matching::MatcherOptions matcher = matching::usualMatcher();  ///< for `fuse`
   std::string out_dir;               ///< where robots/RNN/ goes; empty = nowhere
   bool linger = false;               ///< stay after landing until told to stop, heard or not
 };

@@ -37,9 +37,9 @@ class PairTable {
 ///
 /// Each word group g of a topic becomes a distribution φ_g, and all groups count alike. The background b_g is
 /// the mean of φ_g over all topics, one vote each, and the uniform distribution with a quarter of a vote, so
-/// that two topics alone can be told to be alike. A group with few words says little: φ_g = (n_g + m b_g) / (N_g + m)
-/// with m = 100 words. The similarity is the cosine of sqrt(φ) - sqrt(b), a Hellinger cosine from which the
-/// background has been taken.
+/// that two topics alone can be told to be alike. A group with few words says little: φ_g = (n_g + m b_g) /
+/// (N_g + m) with m = 100 words. The similarity is the cosine of sqrt(φ) - sqrt(b), a Hellinger cosine from
+/// which the background has been taken.
 ///
 /// Made from integers and correctly rounded square roots and quotients only: the same on every machine and
 /// in every order of the topics.

@@ -97,6 +97,8 @@ std::string usualSimilarity(std::string_view matcher) {
   return matcher == "shoal" ? kDiscounted : "cosine";
 }
 
+MatcherOptions usualMatcher() { return {.matcher = "shoal", .similarity = usualSimilarity("shoal")}; }
+
 double usualSigma(std::string_view matcher) { return matcher == "shoal" ? kShoalSigma : 0.75; }
 
 std::optional<double> parseSigma(const std::string& text) {

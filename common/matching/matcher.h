@@ -41,6 +41,9 @@ bool usesSigma(std::string_view matcher);
 /// figures; "discounted" (discounted_similarity.h) with "shoal".
 std::string usualSimilarity(std::string_view matcher);
 
+/// What processes match with unless told: "shoal", which was measured best (docs/matching.md).
+MatcherOptions usualMatcher();
+
 /// What "auto" stands for: .25 with "shoal" (measured, docs/matching.md), the paper's .75 else.
 double usualSigma(std::string_view matcher);
 
