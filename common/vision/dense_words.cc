@@ -36,8 +36,8 @@ void check(const DenseVocabulary& vocabulary) {
 
 uint64_t denseFingerprint(const DenseVocabulary& vocabulary) {
   uint64_t hash = hashCombine(vocabulary.fingerprint(), kExtractionVersion);
-  for (const int setting :
-       {kBlockSize, kBrighter, kMaxCorrected, kPhotometricSettings.level, kPhotometricSettings.max_octaves}) {
+  for (const int setting : {kBlockSize, kBrighter, kMaxCorrected, kPhotometricSettings.level,
+                            kPhotometricSettings.power, kPhotometricSettings.max_octaves}) {
     hash = hashCombine(hash, static_cast<uint64_t>(setting));
   }
   return hash;

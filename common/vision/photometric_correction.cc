@@ -10,13 +10,23 @@ namespace shoal::vision {
 namespace {
 
 constexpr int kLogBits = 16;
+constexpr int64_t kPowerStep = 1 << 14;  // so that the sum over an image stays below 2^63
 
-int32_t logOf(int value) { return fixedLog2(static_cast<uint64_t>(value) + 1, kLogBits); }
+int64_t powerOf(int64_t value) {
+  int64_t power = 1;
+  for (int n = 0; n < kPhotometricSettings.power; ++n) power *= value;
+  return power / kPowerStep;
+}
+
+// log2 of the value whose power this is.
+int32_t logOfValue(int64_t power) {
+  return fixedLog2(static_cast<uint64_t>(power) + 1, kLogBits) / kPhotometricSettings.power;
+}
 
 }  // namespace
 
 void PhotometricCorrection::observe(const cv::Mat& bgr) {
-  SHOAL_DEMAND(bgr.type() == CV_8UC3 && !bgr.empty());
+  SHOAL_DEMAND(bgr.type() == CV_8UC3 && !bgr.empty() && bgr.total() <= size_t{1} << 28);
   std::array<std::array<int64_t, 256>, 3> counts{};
   for (int v = 0; v < bgr.rows; ++v) {
     const uint8_t* pixel = bgr.ptr<uint8_t>(v);
@@ -26,8 +36,8 @@ void PhotometricCorrection::observe(const cv::Mat& bgr) {
   }
   for (size_t c = 0; c < 3; ++c) {
     int64_t sum = 0;
-    for (int value = 0; value < 256; ++value) sum += counts[c][static_cast<size_t>(value)] * logOf(value);
-    sum_of_logs_[c] += sum / (int64_t{bgr.rows} * bgr.cols);
+    for (int value = 0; value < 256; ++value) sum += counts[c][static_cast<size_t>(value)] * powerOf(value);
+    sum_of_means_[c] += sum / (int64_t{bgr.rows} * bgr.cols);
   }
   ++num_images_;
 }
@@ -38,8 +48,8 @@ ChannelResponses PhotometricCorrection::responses() const {
   for (size_t c = 0; c < 3; ++c) {
     int32_t octaves = 0;  // of gain, in steps of 2^-16
     if (num_images_ > 0) {
-      const auto mean = static_cast<int32_t>(sum_of_logs_[c] / num_images_);
-      octaves = std::clamp(logOf(kPhotometricSettings.level) - mean, -kMost, kMost);
+      const int32_t wanted = logOfValue(powerOf(kPhotometricSettings.level));
+      octaves = std::clamp(wanted - logOfValue(sum_of_means_[c] / num_images_), -kMost, kMost);
     }
     const uint64_t gain = fixedExp2(octaves);  // in steps of 2^-16
     for (size_t value = 0; value < 256; ++value) {

@@ -13,17 +13,17 @@
 namespace shoal::vision {
 namespace {
 
-// The gain that the definition gives: level over the geometric mean of (value + 1), one vote an image.
+// The gain that the definition gives: level over the sixth root of the mean sixth power, one vote an image.
 double gainOf(const std::vector<cv::Mat>& pictures, int channel) {
   double mean_of_means = 0.0;
   for (const cv::Mat& picture : pictures) {
     double mean = 0.0;
     for (int v = 0; v < picture.rows; ++v) {
-      for (int u = 0; u < picture.cols; ++u) mean += std::log2(picture.at<cv::Vec3b>(v, u)[channel] + 1.0);
+      for (int u = 0; u < picture.cols; ++u) mean += std::pow(picture.at<cv::Vec3b>(v, u)[channel], 6);
     }
     mean_of_means += mean / static_cast<double>(picture.total()) / static_cast<double>(pictures.size());
   }
-  return 113.0 / std::exp2(mean_of_means);
+  return 150.0 / std::pow(mean_of_means, 1.0 / 6.0);
 }
 
 TEST(PhotometricCorrectionTest, ScalesEveryChannelByItsDefinition) {
@@ -58,7 +58,7 @@ TEST(PhotometricCorrectionTest, HasGainsOfAtMostTwoOctaves) {
   light.observe(cv::Mat(8, 8, CV_8UC3, cv::Scalar::all(255)));
   EXPECT_EQ(dark.responses()[0][10], 4 * 16 * 10);
   EXPECT_EQ(dark.responses()[0][255], kMaxCorrected);
-  EXPECT_NEAR(light.responses()[0][255], 16 * 112, 16);
+  EXPECT_NEAR(light.responses()[0][255], 16 * 150, 16);
 }
 
 // A brighter camera with a cast: what comes out is the same to within rounding of the camera's own values.

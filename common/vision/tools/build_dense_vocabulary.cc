@@ -24,11 +24,13 @@ namespace {
 namespace fs = std::filesystem;
 using namespace shoal::vision;
 
-constexpr int kLongestSide = 2560;       // pixels of a picture at its largest scale
-constexpr int kNumScales = 3;            // each half the one before: photographs are soft at full size
-constexpr int kLeastSide = 64;           // pixels; smaller scales are left out
-constexpr size_t kPointsOfScale = 1000;  // of a picture, so that every picture has as many votes
-constexpr int kReefFrames = 120;         // of one reef
+constexpr int kLongestSide = 2560;  // pixels of a picture at its largest scale
+constexpr int kNumScales = 3;       // each half the one before: photographs are soft at full size
+constexpr int kLeastSide = 64;      // pixels; smaller scales are left out
+constexpr std::array kClarities{
+    1.0, 0.4};  // ground from high above and through water has less colour and contrast
+constexpr size_t kPointsOfScale = 500;  // of a picture and clarity, so that every picture has as many votes
+constexpr int kReefFrames = 120;        // of one reef
 constexpr size_t kPointsOfFrame = 200;
 
 // Training points by kind of feature: points x dimensions.
@@ -52,12 +54,24 @@ void describe(const cv::Mat& picture, const ChannelResponses& responses, size_t 
   }
 }
 
-// What one camera has seen: corrected together, each picture at all scales.
-void describeCamera(const std::vector<fs::path>& files, TrainingPoints& points) {
+// The picture as seen through haze or water: every pixel keeps the part `clarity` of its way from the mean
+// colour.
+cv::Mat throughHaze(const cv::Mat& picture, double clarity) {
+  cv::Mat hazy;
+  cv::addWeighted(picture, clarity, cv::Mat(picture.size(), picture.type(), cv::mean(picture)), 1.0 - clarity,
+                  0.0, hazy);
+  return hazy;
+}
+
+// What one camera has seen through haze: corrected together, each picture at all scales.
+void describeCamera(const std::vector<fs::path>& files, double clarity, TrainingPoints& points) {
+  const auto load = [&](const fs::path& file) {
+    return throughHaze(loadPicture(file, kLongestSide), clarity);
+  };
   PhotometricCorrection correction;
-  for (const fs::path& file : files) correction.observe(loadPicture(file, kLongestSide));
+  for (const fs::path& file : files) correction.observe(load(file));
   for (const fs::path& file : files) {
-    cv::Mat picture = loadPicture(file, kLongestSide);
+    cv::Mat picture = load(file);
     for (int scale = 0; scale < kNumScales && std::min(picture.cols, picture.rows) >= kLeastSide; ++scale) {
       describe(picture, correction.responses(), kPointsOfScale, points);
       cv::Mat half;
@@ -77,10 +91,14 @@ void describeReef(const std::string& spec, TrainingPoints& points) {
 void describeSource(const std::string& source, TrainingPoints& points) {
   if (source.starts_with("reef:")) {
     describeReef(source, points);
-  } else if (source.starts_with("one:")) {
-    describeCamera(picturesIn(source.substr(4)), points);
-  } else {
-    for (const fs::path& file : picturesIn(source)) describeCamera({file}, points);
+    return;
+  }
+  for (const double clarity : kClarities) {
+    if (source.starts_with("one:")) {
+      describeCamera(picturesIn(source.substr(4)), clarity, points);
+    } else {
+      for (const fs::path& file : picturesIn(source)) describeCamera({file}, clarity, points);
+    }
   }
 }
 
