@@ -17,7 +17,7 @@
 #include "shoal/vision/dense_features.h"
 #include "shoal/vision/dense_vocabulary.h"
 #include "shoal/vision/k_means.h"
-#include "training_pictures.h"
+#include "shoal/vision/tools/training_pictures.h"
 
 namespace {
 

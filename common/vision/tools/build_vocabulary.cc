@@ -15,8 +15,8 @@
 #include "shoal/vision/equalized_channels.h"
 #include "shoal/vision/k_majority.h"
 #include "shoal/vision/orb_descriptors.h"
+#include "shoal/vision/tools/training_pictures.h"
 #include "shoal/vision/vocabulary.h"
-#include "training_pictures.h"
 
 namespace {
 

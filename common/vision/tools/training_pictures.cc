@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "training_pictures.h"
+#include "shoal/vision/tools/training_pictures.h"
 
 #include <algorithm>
 #include <cmath>
