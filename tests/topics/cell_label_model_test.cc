@@ -355,7 +355,7 @@ TEST(CellLabelModelTest, SeedRobotAndEveryHyperparameterMatter) {
   others[0].max_topics = 7;
   others[1].cells_per_topic = 60;
   others[2].evidence = 20;
-  others[3].beta = 0.2;
+  others[3].beta = 0.5;
   others[4].coupling = 0.2;
   others[5].tau = 0.9;
   others[6].local_rate = 0.2;
