@@ -48,7 +48,8 @@ void addLaunchCommand(CLI::App& app, Action& chosen) {
       ->add_option("--sigma", flags->sigma,
                    "least similarity of a match: auto (the matcher's usual) or a number in (0, 1]")
       ->capture_default_str();
-  command->add_option("--profile", o.profile, "words and hyper-parameters: paper")->capture_default_str();
+  command->add_option("--profile", o.profile, "words and hyper-parameters: best or paper")
+      ->capture_default_str();
   command->add_option("--cell-size-m", o.cell_size_m, "edge of a cell, m (default: the world's)");
   command->add_option("--camera", o.camera, "camera.json with the intrinsics (default: the world's usual)");
   command->add_option(

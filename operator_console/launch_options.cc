@@ -35,9 +35,8 @@ void check(const LaunchOptions& options) {
                                 std::to_string(options.budget));
   }
   comms::readLink(options.link);
-  if (options.profile == "best") throw std::invalid_argument("--profile best is not built yet; paper is");
-  if (options.profile != "paper") {
-    throw std::invalid_argument("--profile must be paper, got \"" + options.profile + "\"");
+  if (options.profile != "best" && options.profile != "paper") {
+    throw std::invalid_argument("--profile must be best or paper, got \"" + options.profile + "\"");
   }
   matching::check(options.matcher);
   fusion_node::parseRate(options.rate);

@@ -8,6 +8,7 @@
 #include <optional>
 #include <stdexcept>
 #include <thread>
+#include <variant>
 
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
@@ -20,6 +21,7 @@
 #include "shoal/mapping/atomic_file.h"
 #include "shoal/mapping/belief_pieces.h"
 #include "shoal/mapping/fusion.h"
+#include "shoal/robot/profile.h"
 #include "shoal/version.h"
 
 namespace shoal::console {
@@ -64,6 +66,10 @@ void check(const ReproduceOptions& o) {
   demand("--share-repeats", o.share_repeats, 0, 10'000);
   demand("--exchange-every", o.exchange_every, 0, 1'000'000);
   for (const int shares : o.shares) demand("--shares", shares, 1, 256);
+  if (o.exchange_every > 0 && !canMergeModels(o.profile)) {
+    throw std::invalid_argument("--exchange-every: robots of profile " + o.profile +
+                                " do not merge models; leave it out or use --profile paper");
+  }
 }
 
 class Experiment {
@@ -227,6 +233,10 @@ class Experiment {
 };
 
 }  // namespace
+
+bool canMergeModels(const std::string& profile) {
+  return std::holds_alternative<topics::Hyperparameters>(robot::hyperparametersOf(profile));
+}
 
 Reproduction reproduce(const ReproduceOptions& options) {
   check(options);

@@ -20,7 +20,7 @@ struct ReproduceOptions {
   int repeats = 24;
   int share_repeats = 4;  ///< of each cut of the area, at most `repeats`
   std::vector<int> shares = {2, 6, 12, 24, 48};
-  int32_t exchange_every = 25;
+  int32_t exchange_every = 25;  ///< 0 = no team that merges its models
   uint64_t seed = 1;
   double cell_size_m = 0, altitude_m = 0;  ///< 0 = the world's default
 };
@@ -49,6 +49,10 @@ struct WorldResult {
   std::vector<SampleMap> maps;
   double seconds = 0;  ///< of wall time, what was kept from an earlier run not counted
 };
+
+/// Can robots of the profile learn from each other's models, as the team that merges its models does?
+/// @throws std::invalid_argument for a profile that does not exist.
+bool canMergeModels(const std::string& profile);
 
 struct Reproduction {
   ReproduceOptions options;

@@ -24,7 +24,8 @@ void addReproduceCommand(CLI::App& app, Action& chosen) {
   command->add_option("--observations", o.observations, "images per robot")->capture_default_str();
   command->add_option("--repeats", o.repeats, "missions with other random numbers over the same images")
       ->capture_default_str();
-  command->add_option("--profile", o.profile, "words and hyper-parameters: paper")->capture_default_str();
+  command->add_option("--profile", o.profile, "words and hyper-parameters: best or paper")
+      ->capture_default_str();
   command
       ->add_option("--shares", o.shares,
                    "teams among which the same area and number of images are shared out")
@@ -32,16 +33,17 @@ void addReproduceCommand(CLI::App& app, Action& chosen) {
       ->capture_default_str();
   command->add_option("--share-repeats", o.share_repeats, "repeats of each of these, 0 = leave out")
       ->capture_default_str();
-  command
-      ->add_option("--exchange-every", o.exchange_every,
-                   "images between two exchanges of the team that merges its models, 0 = leave out")
-      ->capture_default_str();
+  auto* exchange = command->add_option("--exchange-every", o.exchange_every,
+                                       "images between two exchanges of the team that merges its models, 0 = "
+                                       "leave out (default: 25 for paper, 0 for best)");
   command->add_option("--seed", o.seed, "of the places and the first repeat")->capture_default_str();
   command->add_option("--cell-size-m", o.cell_size_m, "edge of a cell, m (default: the world's)");
   command->add_option("--altitude-m", o.altitude_m, "camera height, m (default: native resolution)");
   command->add_flag("--json", flags->json, "print the summary as JSON");
-  command->callback([flags, &chosen] {
-    chosen = [flags] {
+  command->callback([flags, exchange, &chosen] {
+    chosen = [flags, exchange] {
+      ReproduceOptions& asked = flags->options;
+      if (exchange->count() == 0 && !canMergeModels(asked.profile)) asked.exchange_every = 0;
       const Reproduction reproduction = reproduce(flags->options);
       std::fputs(
           flags->json ? (summaryOf(reproduction).dump(2) + "\n").c_str() : tableOf(reproduction).c_str(),

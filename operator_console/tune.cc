@@ -44,7 +44,7 @@ const std::vector<Parameter<topics::Hyperparameters>>& parametersOf(const topics
 const std::vector<Parameter<topics::CellLabelHyperparameters>>& parametersOf(
     const topics::CellLabelHyperparameters&) {
   static const std::vector<Parameter<topics::CellLabelHyperparameters>> all = {
-      {{"temper", 1e-2, 1.0}, &topics::CellLabelHyperparameters::temper},
+      {{"evidence", 1.0, 100.0}, &topics::CellLabelHyperparameters::evidence},
       {{"beta", 1e-2, 10.0}, &topics::CellLabelHyperparameters::beta},
       {{"coupling", 0.1, 5.0}, &topics::CellLabelHyperparameters::coupling},
   };

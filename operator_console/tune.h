@@ -14,7 +14,7 @@ struct TuneOptions {
   std::string world = "reef:tuning";
   std::string out;
   std::string profile = "paper";
-  std::vector<std::string> knobs;  ///< empty: alpha and beta, or temper and beta for "best"
+  std::vector<std::string> knobs;  ///< empty: alpha and beta, or evidence and beta for "best"
   std::string score = "alone";     ///< "alone": one robot's AMI; "team": the fused map's, CLEAR cosine .75
   int num_robots = 4;              ///< shares; the robot that flies alone flies all of them
   int32_t observations = 60;       ///< per share

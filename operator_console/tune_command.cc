@@ -24,7 +24,7 @@ void addTuneCommand(CLI::App& app, Action& chosen) {
   command
       ->add_option("--knobs", o.knobs,
                    "what is searched: alpha, beta, gamma, neighbor_weight for paper (default alpha,beta); "
-                   "temper, beta, coupling for best (default temper,beta)")
+                   "evidence, beta, coupling for best (default evidence,beta)")
       ->delimiter(',');
   command->add_option("--score", o.score, "alone (one robot's map) or team (the fused map by CLEAR)")
       ->capture_default_str();

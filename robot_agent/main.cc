@@ -168,7 +168,7 @@ int main(int argc, char** argv) {
   app.add_option("--link", f.link,
                  "emulated on the receiving side: clean, mesh, acoustic, satellite or a file")
       ->capture_default_str();
-  app.add_option("--profile", f.agent.explorer.profile, "words and hyper-parameters: paper")
+  app.add_option("--profile", f.agent.explorer.profile, "words and hyper-parameters: best or paper")
       ->capture_default_str();
   app.add_option("--mission", f.mission, "number or name that all processes of a mission share")
       ->capture_default_str();

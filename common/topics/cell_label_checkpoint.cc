@@ -96,6 +96,7 @@ CellLabelModel CellLabelModel::resumed(const CellLabelHyperparameters& hyperpara
     cell.seen_observation = in.i32();
     cell.seen.us = in.i64();
     const size_t num_words = in.count(8);
+    in.demand(num_words > 0, "a cell has no words");
     for (size_t w = 0; w < num_words; ++w) {
       const world::WordCount word{in.i32(), in.i32()};
       in.demand(word.word > (cell.words.empty() ? -1 : cell.words.back().word) &&
@@ -104,6 +105,7 @@ CellLabelModel CellLabelModel::resumed(const CellLabelHyperparameters& hyperpara
       in.demand((total[static_cast<size_t>(word.word)] += word.count) <= INT32_MAX,
                 "a word is counted too often");
       cell.words.push_back(word);
+      cell.num_words += word.count;
     }
     model.counts_.add(cell.words, cell.slot);
     ++model.cells_of_[static_cast<size_t>(cell.slot)];

@@ -8,7 +8,7 @@ namespace shoal::topics {
 void check(const CellLabelHyperparameters& h) {
   checkRange("max_topics", h.max_topics, 1, 10000);
   checkRange("cells_per_topic", h.cells_per_topic, 1, 1'000'000);
-  checkRange("temper", h.temper, 1e-4, 1.0);
+  checkRange("evidence", h.evidence, 1e-3, 1e6);
   checkRange("beta", h.beta, 1.0 / 256, 1e4);
   checkRange("coupling", h.coupling, 0.0, 100.0);
   checkRange("tau", h.tau, 1e-3, 1e3);

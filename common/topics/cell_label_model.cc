@@ -25,6 +25,11 @@ const CellLabelHyperparameters& checked(const CellLabelHyperparameters& hyperpar
   return hyperparameters;
 }
 
+int64_t countOf(const std::vector<world::WordCount>& words) {
+  return std::accumulate(words.begin(), words.end(), int64_t{0},
+                         [](int64_t sum, const world::WordCount& w) { return sum + w.count; });
+}
+
 // Adds `more` to `words`, both ascending by word.
 void merge(std::vector<world::WordCount>& words, const std::vector<world::WordCount>& more) {
   std::vector<world::WordCount> sum;
@@ -45,7 +50,7 @@ CellLabelModel::CellLabelModel(const CellLabelHyperparameters& hyperparameters,
                                const std::vector<world::WordGroup>& groups, uint64_t seed,
                                world::RobotId robot)
     : hyperparameters_(checked(hyperparameters)),
-      scale_(ConditionalScale::of(hyperparameters.temper, hyperparameters.coupling)),
+      scale_(ConditionalScale::of(hyperparameters.evidence, hyperparameters.coupling)),
       seed_(seed),
       robot_(static_cast<uint64_t>(number(robot))),
       counts_(groups, hyperparameters.max_topics, hyperparameters.beta),
@@ -79,6 +84,7 @@ void CellLabelModel::add(const world::WordsInCells& words) {
     cell.seen = time_;
     if (cell.slot >= 0) counts_.remove(cell.words, cell.slot);
     merge(cell.words, fresh.words);
+    cell.num_words += countOf(fresh.words);
     redraw(c, false);
   }
   slots_.nameTopics(time_);
@@ -121,7 +127,7 @@ void CellLabelModel::redraw(int32_t c, bool words_are_counted) {
     const int32_t slot = cells_[static_cast<size_t>(neighbor)].slot;
     if (slot >= 0) ++alike_[static_cast<size_t>(slot)];  // in one image some are not drawn yet
   }
-  weighLabels(scores_, alike_, scale_, weights_);
+  weighLabels(scores_, cell.num_words, alike_, scale_, weights_);
   Random random(hashCombine(seed_, kCellStream), robot_, static_cast<uint64_t>(c), cell.num_draws++);
   const int32_t drawn = drawLabel(weights_, random);
   const uint64_t sum = std::accumulate(weights_.begin(), weights_.end(), uint64_t{0});
@@ -169,11 +175,8 @@ std::vector<double> CellLabelModel::surprise(const world::WordsInCells& words,
       }
     }
     const bool alone = std::ranges::count(around, 0) == std::ssize(around);
-    const int64_t num_words =
-        std::accumulate(seen.words.begin(), seen.words.end(), int64_t{0},
-                        [](int64_t sum, const world::WordCount& w) { return sum + w.count; });
     counts_.logLikelihoods(seen.words, -1, scores);
-    bits[i] = bitsPerWord(scores, alone ? cells_of_ : around, num_words);
+    bits[i] = bitsPerWord(scores, alone ? cells_of_ : around, countOf(seen.words));
   }
   return bits;
 }

@@ -24,8 +24,9 @@ namespace shoal::topics {
 ///
 ///     p(z = k) ∝ exp( t Σ_words ln((n_gkw + β) / (n_gk + V_g β)) + J #(neighbours with label k) ),
 ///
-/// and puts the words back. Words of one cell are far from independent; t makes up for that. Labels compete
-/// on equal terms, however many cells they have: a prior in favour of large ones would eat small classes. At
+/// and puts the words back. Words of one cell are far from independent (kinds of words at one point, points
+/// side by side, one place in many images), so t = min(1, evidence / words of the cell). Labels compete on
+/// equal terms, however many cells they have: a prior in favour of large ones would eat small classes. At
 /// most K labels are in use, and not more than one for every `cells_per_topic` cells seen (2 at least), so
 /// that a robot that has seen little does not split hairs.
 ///
@@ -41,9 +42,8 @@ namespace shoal::topics {
 /// Topic ids lie in [0, 9999], ascend with creation and are never used again: a label that loses its last
 /// cell retires, and is another topic when it is drawn again (TopicSlots).
 ///
-/// Why not TopicModel: a label per cell with this prior makes better maps from the same words in fewer
-/// visits. It is the clustering half of the spatial models that BNP-ROST comes from, with the mixture over
-/// topics inside a cell left out.
+/// It differs from TopicModel in that a cell has no mixture of topics, only one, that kinds of words have
+/// distributions of their own, and that K is fixed.
 class CellLabelModel final : public Learner {
  public:
   /// @throws std::invalid_argument naming a hyperparameter out of range, or groups that leave gaps.
@@ -97,6 +97,7 @@ class CellLabelModel final : public Learner {
   struct LabelledCell {
     world::CellIndex index;
     std::vector<world::WordCount> words;  // ascending, all images together
+    int64_t num_words = 0;                // the sum of their counts
     float certainty = 0;                  // p(z = slot) when it was last drawn
     int32_t slot = -1;                    // its label; -1 before the first draw
     uint32_t num_draws = 0;               // names its next random numbers

@@ -17,17 +17,19 @@ __extension__ using Wide = __int128;
 
 }  // namespace
 
-ConditionalScale ConditionalScale::of(double temper, double coupling) {
+ConditionalScale ConditionalScale::of(double evidence, double coupling) {
   const auto fixed = [](double x) { return static_cast<int64_t>(std::floor(x * kLogOne + 0.5)); };
-  return {.temper = fixed(temper), .coupling = fixed(coupling * std::numbers::log2e)};
+  return {.evidence = fixed(evidence), .coupling = fixed(coupling * std::numbers::log2e)};
 }
 
-void weighLabels(std::span<const int64_t> log_likelihoods, std::span<const int32_t> alike,
+void weighLabels(std::span<const int64_t> log_likelihoods, int64_t num_words, std::span<const int32_t> alike,
                  const ConditionalScale& scale, std::span<uint64_t> weights) {
-  SHOAL_DEMAND(alike.size() == log_likelihoods.size() && weights.size() == alike.size());
+  SHOAL_DEMAND(alike.size() == log_likelihoods.size() && weights.size() == alike.size() && num_words > 0);
+  const int64_t all = num_words * kLogOne;
+  const int64_t counted = std::min(scale.evidence, all);
   const auto logWeight = [&](size_t k) {
-    const Wide tempered = (static_cast<Wide>(log_likelihoods[k]) * scale.temper) >> kLogBits;
-    return static_cast<int64_t>(tempered) + scale.coupling * alike[k];
+    const auto words = static_cast<int64_t>(static_cast<Wide>(log_likelihoods[k]) * counted / all);
+    return words + scale.coupling * alike[k];
   };
   int64_t largest = std::numeric_limits<int64_t>::min();
   for (size_t k = 0; k < alike.size(); ++k) {

@@ -24,8 +24,8 @@ uint64_t hashOf(const Hyperparameters& h) {
 }
 
 uint64_t hashOf(const CellLabelHyperparameters& h) {
-  return hashOf({static_cast<double>(h.max_topics), static_cast<double>(h.cells_per_topic), h.temper, h.beta,
-                 h.coupling, h.tau, h.local_rate, h.visits_per_cell});
+  return hashOf({static_cast<double>(h.max_topics), static_cast<double>(h.cells_per_topic), h.evidence,
+                 h.beta, h.coupling, h.tau, h.local_rate, h.visits_per_cell});
 }
 
 }  // namespace

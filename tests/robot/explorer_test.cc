@@ -3,6 +3,7 @@
 
 #include <numeric>
 #include <stdexcept>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -37,17 +38,15 @@ mapping::LocalBelief beliefAfter(const ExplorerOptions& o, const std::vector<wor
   return explorer.belief();
 }
 
-// A label per word, and a label per cell.
-class EveryExplorer : public ::testing::TestWithParam<topics::LearnerHyperparameters> {
+class EveryExplorer : public ::testing::TestWithParam<std::string> {
  public:
   static ExplorerOptions options(int robot = 0, uint64_t seed = 1) {
     ExplorerOptions o = robot::options(robot, seed);
-    o.hyperparameters = GetParam();
+    o.profile = GetParam();
     return o;
   }
 };
-INSTANTIATE_TEST_SUITE_P(Learners, EveryExplorer,
-                         ::testing::Values(topics::Hyperparameters{}, topics::CellLabelHyperparameters{}));
+INSTANTIATE_TEST_SUITE_P(Profiles, EveryExplorer, ::testing::Values("paper", "best"));
 
 TEST_P(EveryExplorer, LabelsTheCellsUnderTheCamera) {
   const auto images = twoImages();
@@ -88,9 +87,15 @@ TEST_P(EveryExplorer, EqualMissionsAreEqualAndSeedsAndRobotsDiffer) {
 
 TEST(ExplorerTest, OnlyARobotThatLabelsWordsAdoptsTopics) {
   ExplorerOptions cells = options();
-  cells.hyperparameters = topics::CellLabelHyperparameters{};
+  cells.profile = "best";
   EXPECT_THROW(Explorer(cells).adopt({}), std::invalid_argument);
   EXPECT_NO_THROW(Explorer(options()).adopt({}));
+}
+
+TEST(ExplorerTest, ProfilesDifferInTheirFingerprint) {
+  ExplorerOptions best = options();
+  best.profile = "best";
+  EXPECT_NE(Explorer(options()).fingerprint(), Explorer(best).fingerprint());
 }
 
 TEST(ExplorerTest, HowItLearnsIsInTheFingerprint) {
@@ -107,9 +112,9 @@ TEST(ExplorerTest, AnotherCellSizeIsAnotherFingerprint) {
   EXPECT_EQ(Explorer(options()).fingerprint(), Explorer(options(5, 9)).fingerprint());
 }
 
-TEST(ExplorerTest, RefusesWhatIsNotBuilt) {
+TEST(ExplorerTest, RefusesProfilesAndCellSizesThatDoNotExist) {
   ExplorerOptions wrong = options();
-  wrong.profile = "best";
+  wrong.profile = "finest";
   EXPECT_THROW(Explorer{wrong}, std::invalid_argument);
   EXPECT_THROW(hyperparametersOf("paperr"), std::invalid_argument);
   wrong = options();

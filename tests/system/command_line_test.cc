@@ -84,9 +84,9 @@ TEST(LaunchTest, NamesTheOptionThatIsWrong) {
   expectRefusal(launch + "--world /no/such/folder", "/no/such/folder");
 }
 
-TEST(LaunchTest, RefusesByNameWhatIsNotBuiltYet) {
+TEST(LaunchTest, RefusesProfilesThatDoNotExist) {
   const std::string fly = "launch --world reef:sparse --out " + temporaryFolder() + "/run ";
-  expectRefusal(fly + "--profile best", "--profile best is not built yet");
+  expectRefusal(fly + "--profile finest", "--profile must be best or paper, got \"finest\"");
 }
 
 TEST(LaunchTest, NamesTheFieldOfALinkThatIsWrong) {

@@ -283,7 +283,7 @@ class Mission(unittest.TestCase):
             (2, ["launch", "--world", "reef:nowhere", "--out", self.top + "/x"]),
             (2, ["launch", "--world", "reef:tuning", "--out", self.a]),  # holds a finished mission
             (2, ["launch", "--world", "reef:tuning", "--matcher", "nearest", "--out", self.top + "/x"]),
-            (2, ["launch", "--world", "reef:tuning", "--profile", "best", "--out", self.top + "/x"]),
+            (2, ["launch", "--world", "reef:tuning", "--profile", "finest", "--out", self.top + "/x"]),
             (2, ["launch", "--world", "reef:tuning", "--link", "string", "--out", self.top + "/x"]),
             (1, ["evaluate", "--run", self.top, "--world", "reef:tuning"]),
             (1, ["status", "--run", self.top]),

@@ -16,7 +16,7 @@ namespace {
 using world::RobotId;
 using Bytes = std::vector<uint8_t>;
 
-constexpr CellLabelHyperparameters kSettings{.max_topics = 20, .cells_per_topic = 10, .temper = 0.03};
+constexpr CellLabelHyperparameters kSettings{.max_topics = 20, .cells_per_topic = 10, .evidence = 3};
 
 CellLabelModel made() { return {kSettings, PlantedMap::groups(), 7, RobotId{3}}; }
 CellLabelModel resumed(const Bytes& bytes) {

@@ -26,7 +26,7 @@ TEST(CellLabelHyperparametersTest, AcceptTheDefaultsAndTheEndsOfEveryRange) {
   EXPECT_NO_THROW(check(CellLabelHyperparameters{}));
   EXPECT_NO_THROW(check(CellLabelHyperparameters{.max_topics = 1,
                                                  .cells_per_topic = 1,
-                                                 .temper = 1e-4,
+                                                 .evidence = 1e-3,
                                                  .beta = 1.0 / 256,
                                                  .coupling = 0,
                                                  .tau = 1e-3,
@@ -34,7 +34,7 @@ TEST(CellLabelHyperparametersTest, AcceptTheDefaultsAndTheEndsOfEveryRange) {
                                                  .visits_per_cell = 0}));
   EXPECT_NO_THROW(check(CellLabelHyperparameters{.max_topics = 10'000,
                                                  .cells_per_topic = 1'000'000,
-                                                 .temper = 1,
+                                                 .evidence = 1e6,
                                                  .beta = 1e4,
                                                  .coupling = 100,
                                                  .tau = 1e3,
@@ -54,10 +54,10 @@ TEST(CellLabelHyperparametersTest, RejectWhatLiesOutsideARange) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinite = std::numeric_limits<double>::infinity();
   for (const auto field :
-       {&H::temper, &H::beta, &H::coupling, &H::tau, &H::local_rate, &H::visits_per_cell}) {
+       {&H::evidence, &H::beta, &H::coupling, &H::tau, &H::local_rate, &H::visits_per_cell}) {
     for (const double bad : {-1e-6, infinite, nan}) EXPECT_NE(complaint(field, bad), "") << bad;
   }
-  EXPECT_NE(complaint(&H::temper, 0.0), "");
+  EXPECT_NE(complaint(&H::evidence, 0.0), "");
   EXPECT_NE(complaint(&H::beta, 0.0), "");
 }
 

@@ -13,19 +13,19 @@ namespace shoal::topics {
 namespace {
 
 std::vector<uint64_t> weights(const std::vector<double>& natural_logs, const std::vector<int32_t>& alike,
-                              double temper, double coupling) {
+                              double evidence, double coupling) {
   std::vector<int64_t> logs;
   for (const double log : natural_logs) logs.push_back(std::llround(log / std::log(2.0) * kLogOne));
   std::vector<uint64_t> result(logs.size());
-  weighLabels(logs, alike, ConditionalScale::of(temper, coupling), result);
+  weighLabels(logs, 100, alike, ConditionalScale::of(evidence, coupling), result);
   return result;
 }
 
-// exp(.1 ln L + 1.5 m), worked in floating point.
+// exp(10 / 100 ln L + 1.5 m), worked in floating point; 100 words that are worth 10.
 TEST(LabelConditionalTest, IsTheTemperedLikelihoodTimesThePottsPrior) {
   const std::vector<double> logs = {-300, -280, -310.5, -250};
   const std::vector<int32_t> alike = {2, 0, 4, kNotALabel};
-  const auto drawn = weights(logs, alike, 0.1, 1.5);
+  const auto drawn = weights(logs, alike, 10, 1.5);
   std::vector<double> expected;
   for (size_t k = 0; k < 3; ++k) expected.push_back(std::exp(0.1 * logs[k] + 1.5 * alike[k]));
   const double largest = *std::ranges::max_element(expected);
@@ -33,18 +33,26 @@ TEST(LabelConditionalTest, IsTheTemperedLikelihoodTimesThePottsPrior) {
   EXPECT_EQ(drawn[3], 0u);
   for (size_t k = 0; k < 3; ++k) {
     const double share = static_cast<double>(drawn[k]) / 4294967296.0;
-    EXPECT_NEAR(share / (expected[k] / largest), 1.0, 1e-3) << k;  // t and J are rounded to 2^-16
+    EXPECT_NEAR(share / (expected[k] / largest), 1.0, 1e-3) << k;  // e and J are rounded to 2^-16
   }
 }
 
+// Words never count for more than they are.
+TEST(LabelConditionalTest, FewWordsAreWorthWhatTheyAre) {
+  const std::vector<double> logs = {-3, -1, -2};
+  const std::vector<int32_t> alike = {1, 0, 0};
+  EXPECT_EQ(weights(logs, alike, 100, 1), weights(logs, alike, 1e6, 1));
+  EXPECT_NE(weights(logs, alike, 99, 1), weights(logs, alike, 1e6, 1));
+}
+
 TEST(LabelConditionalTest, WhatIsHopelessIsNeverDrawn) {
-  const auto drawn = weights({-1e9, 0, -1e9}, {6, 0, 6}, 1.0, 100.0);
+  const auto drawn = weights({-1e9, 0, -1e9}, {6, 0, 6}, 100.0, 100.0);
   EXPECT_EQ(drawn, (std::vector<uint64_t>{0, uint64_t{1} << 32, 0}));
 }
 
 // Without words and neighbours all labels are alike, of however many cells.
 TEST(LabelConditionalTest, KnowsNoPopularity) {
-  const auto drawn = weights({0, 0, 0}, {0, 0, kNotALabel}, 0.1, 1.0);
+  const auto drawn = weights({0, 0, 0}, {0, 0, kNotALabel}, 10, 1.0);
   EXPECT_EQ(drawn[0], drawn[1]);
   EXPECT_EQ(drawn[2], 0u);
 }

@@ -45,8 +45,8 @@ TEST(MakeLearnerTest, EveryHyperparameterIsInTheFingerprint) {
   std::vector<CellLabelHyperparameters> cells(9);
   cells[1].max_topics = 7;
   cells[2].cells_per_topic = 7;
-  cells[3].temper = 0.2;
-  cells[4].beta = 0.2;
+  cells[3].evidence = 2;
+  cells[4].beta = 0.7;
   cells[5].coupling = 0.2;
   cells[6].tau = 0.9;
   cells[7].local_rate = 0.2;

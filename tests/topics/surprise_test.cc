@@ -26,8 +26,8 @@ TEST(SurpriseTest, IsThePerplexityWorkedByHand) {
 // Two cells of other words, far apart; V = 3, beta = 1: (4 + 1) / (4 + 3) for a word of one's own, 1 / 7 for
 // another's.
 TEST(SurpriseTest, TheNeighborhoodIsTheCellAndWhatAdjoinsIt) {
-  CellLabelModel model({.cells_per_topic = 1, .temper = 1}, {{.name = "all", .first = 0, .size = 3}}, 1,
-                       world::RobotId{0});
+  CellLabelModel model({.cells_per_topic = 1, .evidence = 100, .beta = 1},
+                       {{.name = "all", .first = 0, .size = 3}}, 1, world::RobotId{0});
   world::WordsInCells image{
       .observation = 0, .time = {}, .cells = {{{0, 0, 0}, {{0, 4}}}, {{9, 0, 0}, {{1, 4}}}}};
   EXPECT_EQ(model.surprise(image, Surroundings::kGlobal), (std::vector<double>{0, 0}));
