@@ -64,8 +64,9 @@ int main(int argc, char** argv) {
   app.add_option("--matcher", options.matcher.matcher,
                  "id, hungarian, incremental, components, clear or shoal")
       ->capture_default_str();
-  auto* similarity = app.add_option("--similarity", options.matcher.similarity,
-                                    "cosine, overlap, l1, l2, hellinger, js or discounted (default: the matcher's usual)");
+  auto* similarity =
+      app.add_option("--similarity", options.matcher.similarity,
+                     "cosine, overlap, l1, l2, hellinger, js or discounted (default: the matcher's usual)");
   app.add_option("--sigma", sigma,
                  "least similarity of a match: auto (the matcher's usual) or a number in (0, 1]")
       ->capture_default_str();
