@@ -77,7 +77,7 @@ class SmallMission {
 
   /// What a node knows that heard everything.
   static fusion_node::MissionState state() {
-    fusion_node::MissionState state(kMission, {});
+    fusion_node::MissionState state(kMission, matching::usualMatcher());
     comms::Stats stats;
     for (const comms::Packet& packet : packets()) state.hear(packet, stats);
     state.refreshMap();
@@ -95,10 +95,14 @@ class SmallMission {
     mapping::writeFileAtomically(folder + "/labels.csv", mapping::labelsCsv(view.map, grid));
     nlohmann::ordered_json nodes = nlohmann::ordered_json::array();
     for (const mapping::NodeStatus& node : view.nodes) nodes.push_back(mapping::toJson(node));
+    const matching::MatcherOptions matcher = matching::usualMatcher();
     const nlohmann::ordered_json summary = {
         {"mission_id", kMission},
         {"cell_size_m", 2},
-        {"matching", {{"matcher", "clear"}, {"similarity", "cosine"}, {"sigma", 0.75}}},
+        {"matching",
+         {{"matcher", matcher.matcher},
+          {"similarity", matcher.similarity},
+          {"sigma", matcher.leastSimilarity()}}},
         {"digest",
          {{"state", mapping::digestText(view.state_digest)}, {"map", mapping::digestText(view.map_digest)}}},
         {"nodes", nodes}};
