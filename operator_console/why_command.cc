@@ -67,8 +67,8 @@ void printDecision(const Json& a) {
                topicName(with), with["label"].get<int>(), with["similarity"].get<double>(),
                a["margin"].get<double>(), with["similarity"].get<double>() < sigma ? "below" : "above");
   } else {
-    fmt::print("margin: {:.3f} between sigma ({:.3f}) and the mean that would have joined that label\n",
-               a["margin"].get<double>(), sigma);
+    fmt::print("margin: {:.3f} from sigma ({:.3f}) to the mean with that label\n", a["margin"].get<double>(),
+               sigma);
   }
 }
 
