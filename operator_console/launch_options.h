@@ -19,7 +19,7 @@ struct LaunchOptions {
   int64_t budget = 2000;       ///< bytes per second of mission time, each; 0 = unlimited
   std::string link = "clean";  ///< clean, mesh, acoustic, satellite or a file: docs/link.md
   std::string rate = "max";    ///< mission seconds per wall second, or "max"
-  std::string profile = "paper";
+  std::string profile = "best";
   matching::MatcherOptions matcher = matching::usualMatcher();
   double cell_size_m = 0;  ///< 0 = the world's own
   double altitude_m = 0;   ///< 0 = native resolution

@@ -18,7 +18,7 @@ namespace shoal::robot {
 /// What makes an explorer. All of it changes what it learns.
 struct ExplorerOptions {
   world::RobotId robot{};
-  std::string profile = "paper";                                  ///< words and hyper-parameters
+  std::string profile = "best";                                   ///< words and hyper-parameters
   uint64_t seed = 1;                                              ///< mission seed
   double cell_size_m = 0.8;                                       ///< edge of a cell, > 0
   int32_t epoch = 0;                                              ///< grows when the robot has lost its disk

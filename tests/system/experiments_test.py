@@ -47,7 +47,8 @@ class Experiments(unittest.TestCase):
                        "2", "--exchange-every", "3", "--seed", "7", "--out", cls.out, "--json"]
         cls.summary = json.loads(run(*cls.command).stdout)
         cls.flown = os.path.join(cls.top, "flown")
-        run("launch", "--world", "reef:tuning", *TEAM, "--seed", "7", "--single", "--rate", "max", "--out", cls.flown)
+        run("launch", "--world", "reef:tuning", *TEAM, "--seed", "7", "--single", "--rate", "max", "--profile", "paper",
+            "--out", cls.flown)
 
     @classmethod
     def tearDownClass(cls):
@@ -59,7 +60,7 @@ class Experiments(unittest.TestCase):
         with open(os.path.join(self.out, "table.csv"), encoding="utf-8") as file:
             names = [row["matcher"] for row in csv.DictReader(file)]
         scores = dict(zip(names, first["newest"]))
-        for name, matcher in (("ID", "id"), ("Hungarian, l2", "hungarian"), ("CLEAR, cosine 0.75", "clear")):
+        for name, matcher in (("ID", "id"), ("Hungarian, l2", "hungarian"), ("CLEAR, cosine 0.75", "clear"), ("Shoal 0.25", "shoal")):
             self.assertAlmostEqual(scores[name]["ami"], flown["matchers"][matcher]["ami"], 6, name)
             self.assertEqual(scores[name]["labels"], flown["matchers"][matcher]["labels"], name)
         both = dict(zip(names, first["concatenated"]))
