@@ -27,7 +27,7 @@ printed_by() {
 mkdir "$work/system"
 ln -s /usr/include/nlohmann "$work/system/nlohmann"
 
-printed_by reference "" g++ -O2
+printed_by reference "" g++ -O1
 status=0
 # alike NAME RUNNER COMPILER FLAGS...
 alike() {
@@ -43,12 +43,8 @@ alike() {
     status=1
   fi
 }
-alike gcc-O1 "" g++ -O1
 alike gcc-O3 "" g++ -O3
-if [[ $(uname -m) == x86_64 ]]; then
-  grep -qw fma /proc/cpuinfo && alike gcc-avx2-fma "" g++ -O3 -mavx2 -mfma
-  alike gcc-no-avx "" g++ -O3 -march=native -mno-avx
-fi
+[[ $(uname -m) != x86_64 ]] || alike gcc-no-avx "" g++ -O3 -march=native -mno-avx
 alike clang "" clang++ -O2
 alike aarch64 "qemu-aarch64 -L /usr/aarch64-linux-gnu" aarch64-linux-gnu-g++ -O2
 exit $status
