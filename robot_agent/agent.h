@@ -21,13 +21,13 @@ namespace shoal::robot_agent {
 struct AgentOptions {
   robot::ExplorerOptions explorer;
   int32_t mission = 1;
-  int64_t budget = 2000;             ///< bytes per second of mission time on the link, 0 = unlimited
-  int64_t start_us = 0;              ///< mission time at which the flight begins: later after a restart
-  double rate = 1.0;                 ///< seconds of mission time per wall second, 0 = as fast as possible
-  bool fuse = false;                 ///< hold everybody's beliefs and fuse them too
+  int64_t budget = 2000;  ///< bytes per second of mission time on the link, 0 = unlimited
+  int64_t start_us = 0;   ///< mission time at which the flight begins: later after a restart
+  double rate = 1.0;      ///< seconds of mission time per wall second, 0 = as fast as possible
+  bool fuse = false;      ///< hold everybody's beliefs and fuse them too
   matching::MatcherOptions matcher = matching::usualMatcher();  ///< for `fuse`
-  std::string out_dir;               ///< where robots/RNN/ goes; empty = nowhere
-  bool linger = false;               ///< stay after landing until told to stop, heard or not
+  std::string out_dir;                                          ///< where robots/RNN/ goes; empty = nowhere
+  bool linger = false;  ///< stay after landing until told to stop, heard or not
 };
 
 /// One robot: flies its source, learns, tells the others under its budget, and listens.

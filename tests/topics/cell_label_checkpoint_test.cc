@@ -117,7 +117,7 @@ TEST(CellLabelCheckpointTest, LiesWithAFittingChecksumDoNoHarm) {
   model.observe(image);
   const Bytes whole = model.checkpoint();
   const auto withChecksum = [](Bytes bytes) {
-    bytes.resize(bytes.size() - 8);
+    bytes.erase(bytes.end() - 8, bytes.end());
     uint64_t hash = bytes.size();
     for (size_t first = 0; first < bytes.size(); first += 8) {
       uint64_t word = 0;
