@@ -111,7 +111,7 @@ LinkModel linkFrom(const json& object) {
 LinkModel parseLink(const std::string& text, const std::string& origin) {
   try {
     return linkFrom(json::parse(text, nullptr, true, /*ignore_comments=*/true));
-  } catch (const json::parse_error& error) {
+  } catch (const json::exception& error) {
     throw std::invalid_argument("the link " + origin + ": broken JSON: " + error.what());
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument("the link " + origin + ": " + error.what());

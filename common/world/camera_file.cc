@@ -82,7 +82,7 @@ Camera parseCamera(const std::string& json_text, const fs::path& origin) {
     const json parsed = json::parse(json_text);
     if (!parsed.is_object()) refuse(origin, "must be a JSON object, got " + std::string(parsed.type_name()));
     return cameraFrom(parsed, origin);
-  } catch (const json::parse_error& e) {
+  } catch (const json::exception& e) {
     refuse(origin, std::string("broken JSON: ") + e.what());
   }
 }

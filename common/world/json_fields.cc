@@ -26,7 +26,7 @@ json parseObject(const fs::path& file, const std::string& hint) {
     json parsed = json::parse(in);  // its message has line and column
     if (!parsed.is_object()) refuse(file, "must be a JSON object, got " + std::string(parsed.type_name()));
     return parsed;
-  } catch (const json::parse_error& e) {
+  } catch (const json::exception& e) {
     refuse(file, std::string("broken JSON: ") + e.what());
   }
 }

@@ -96,6 +96,7 @@ TEST(LinkModelTest, NamesTheFileAndTheFieldThatIsWrong) {
       {R"({"partitions": [{"from_s": 0, "until_s": 5, "groups": [["R00"], ["R00"]]}]})", "names R00 twice"},
       {R"([])", "a link is a JSON object"},
       {R"({"loss": 0.1)", "broken JSON"},
+      {R"({"loss": 1e999})", "broken JSON"},
   };
   for (const auto& [text, said] : cases) {
     EXPECT_NE(complaint(text).find(said), std::string::npos) << text << "\nsaid: " << complaint(text);

@@ -77,6 +77,8 @@ TEST(CameraFileTest, NamesWhatIsWrong) {
             std::string::npos);
   EXPECT_NE(complaint([] { (void)parseCamera("[]", "camera.json"); }).find("object"), std::string::npos);
   EXPECT_NE(complaint([] { (void)parseCamera("{", "camera.json"); }).find("broken JSON"), std::string::npos);
+  EXPECT_NE(complaint([] { (void)parseCamera(R"({"fx": 1e999})", "camera.json"); }).find("broken JSON"),
+            std::string::npos);
   EXPECT_NE(complaint([] { (void)readCamera("no/such/camera.json"); }).find("not found"), std::string::npos);
 }
 
