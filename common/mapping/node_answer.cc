@@ -14,7 +14,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-double rounded(double value, double per_unit) { return std::round(value * per_unit) / per_unit; }
+// To milliseconds. Mission time has microseconds, and differences of doubles do not hold them exactly:
+// without the first step half a millisecond would go up or down by where the times came from.
+double seconds(double value) { return std::floor((std::round(value * 1e6) + 500) / 1e3) / 1e3; }
 
 std::string unknownNode(const MissionView& view, const std::string& node) {
   std::string said = "nothing was heard of \"" + node + "\"; heard were";
@@ -37,7 +39,7 @@ Json topicsTold(const MissionView& view, const BeliefStore& beliefs, world::Robo
                     {"name", row == view.map.labels.end() ? "" : row->name},
                     {"cells", topic.cells},
                     {"weight", topic.weight},
-                    {"created_s", rounded(topic.created.seconds(), 1e3)}});
+                    {"created_s", seconds(topic.created.seconds())}});
   }
   return told;
 }
@@ -60,12 +62,12 @@ Json nodeAnswer(const MissionView& view, const BeliefStore& beliefs, const std::
   });
   for (const GlobalCell& c : view.map.cells) shown += robot && c.robot == *robot ? 1 : 0;
   return {{"node", toJson(*status)},
-          {"now_s", rounded(now_s, 1e3)},
-          {"silent_s", rounded(now_s - status->heard_s, 1e3)},
+          {"now_s", seconds(now_s)},
+          {"silent_s", seconds(now_s - status->heard_s)},
           {"cells_told", cells},
           {"cells_shown", shown},
-          {"told_until_s", told_until ? Json(rounded(told_until->seconds(), 1e3)) : Json()},
-          {"behind_s", told_until ? Json(rounded(status->heard_s - told_until->seconds(), 1e3)) : Json()},
+          {"told_until_s", told_until ? Json(seconds(told_until->seconds())) : Json()},
+          {"behind_s", told_until ? Json(seconds(status->heard_s - told_until->seconds())) : Json()},
           {"topics", robot ? topicsTold(view, beliefs, *robot) : Json::array()}};
 }
 
