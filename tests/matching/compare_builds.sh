@@ -43,8 +43,9 @@ alike() {
     status=1
   fi
 }
-alike gcc-O3 "" g++ -O3
-[[ $(uname -m) != x86_64 ]] || alike gcc-no-avx "" g++ -O3 -march=native -mno-avx
+no_avx=()
+[[ $(uname -m) != x86_64 ]] || no_avx=(-march=native -mno-avx)
+alike gcc-O3-no-avx "" g++ -O3 "${no_avx[@]}"
 alike clang "" clang++ -O2
 alike aarch64 "qemu-aarch64 -L /usr/aarch64-linux-gnu" aarch64-linux-gnu-g++ -O2
 exit $status
