@@ -46,7 +46,8 @@ int32_t drawLabel(std::span<const uint64_t> weights, Random& random) {
     if (point < weights[k]) return static_cast<int32_t>(k);
     point -= weights[k];
   }
-  SHOAL_DEMAND(!"the point lies below the sum");
+  constexpr bool kPointBelowSum = false;
+  SHOAL_DEMAND(kPointBelowSum);
 }
 
 }  // namespace shoal::topics

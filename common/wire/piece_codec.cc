@@ -246,7 +246,7 @@ std::vector<Piece> cutToFit(const Piece& whole, size_t max_payload) {
 }
 
 Result<Piece> decodePiece(MessageKind kind, std::span<const uint8_t> bytes) {
-  const auto decoded = [&]() -> Result<Piece> {
+  auto decoded = [&]() -> Result<Piece> {
     switch (kind) {
       case MessageKind::kTopics:
         return decodeTopics(bytes);
