@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "shoal/mapping/local_belief.h"
 #include "shoal/topics/make_learner.h"
@@ -51,6 +53,19 @@ class Explorer {
   /// Learns from others' topics as well as from its own words: TopicModel::adopt().
   /// @throws std::invalid_argument unless the robot labels every word, as profile "paper" does.
   std::vector<world::TopicId> adopt(const std::vector<topics::AdoptedTopic>& others);
+
+  /// The whole mind as bytes: topics, labels, what was learnt about the camera, the observation number. An
+  /// explorer made with the same options (the epoch apart, which is the caller's) and restored from them goes
+  /// on as this one does, byte for byte.
+  std::vector<uint8_t> checkpoint() const;
+
+  /// Takes over the mind of the explorer that wrote the checkpoint, in place of its own.
+  /// @throws std::runtime_error naming what is wrong with bytes that are damaged, of another version, or of
+  ///         an explorer that was made with something else; this one is then as it was.
+  void restore(std::span<const uint8_t> checkpoint);
+
+  /// Number of the last observation learnt from, -1 before the first.
+  int32_t lastObservation() const { return last_observation_; }
 
   const std::vector<world::WordGroup>& groups() const { return words_->groups(); }
   /// Identifies words and hyper-parameters: only robots with equal fingerprints are comparable.

@@ -75,9 +75,8 @@ class CellLabelModel final : public Learner {
   /// @throws std::invalid_argument if `words` breaks its contract.
   std::vector<double> surprise(const world::WordsInCells& words, Surroundings surroundings) const;
 
-  /// The whole state as bytes: what is resumed from them goes on as this model does, byte for byte.
   /// About 48 bytes a cell and 8 a different word of a cell.
-  std::vector<uint8_t> checkpoint() const;
+  std::vector<uint8_t> checkpoint() const override;
 
   /// The model that wrote the checkpoint, given what it was made with.
   /// @throws std::runtime_error for bytes that are damaged, of another version, or of a model that was made

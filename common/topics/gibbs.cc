@@ -86,7 +86,7 @@ void Gibbs::addCounts(int32_t slot, std::span<const world::WordCount> words, int
   }
   inverse_[k] = 1.0 / (static_cast<double>(count) + beta_sum_);
   inverse_less_[k] = 1.0 / (static_cast<double>(count - 1) + beta_sum_);
-  if (!was_used && count > 0) slots_.open(slot);
+  if (!was_used && count > 0 && !slots_.isOpen(slot)) slots_.open(slot);
   if (was_used && count == 0) slots_.close(slot);
 }
 

@@ -56,6 +56,12 @@ class Gibbs {
   /// as words do.
   void addCounts(int32_t slot, std::span<const world::WordCount> words, int sign);
 
+  /// Makes a fresh table's topics what others were: names and places, to which addCounts() then gives the
+  /// words. As TopicSlots::restore().
+  void restoreTopics(int32_t num_ids_used, std::span<const TopicSlots::Named> open) {
+    slots_.restore(num_ids_used, open);
+  }
+
   int32_t vocabularySize() const { return vocabulary_size_; }
   const TopicSlots& slots() const { return slots_; }
   void nameTopics(world::Timestamp now) { slots_.nameTopics(now); }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "shoal/topics/snapshot.h"
 #include "shoal/world/words_in_cells.h"
@@ -22,6 +23,10 @@ class Learner {
 
   /// Topics as exact counts, every cell with its label. The only call that reads everything.
   virtual Snapshot snapshot() const = 0;
+
+  /// The whole state as bytes: what is resumed from them (resumeLearner()) goes on as this learner does, byte
+  /// for byte.
+  virtual std::vector<uint8_t> checkpoint() const = 0;
 
   virtual int32_t numCells() const = 0;
   virtual int32_t numTopics() const = 0;

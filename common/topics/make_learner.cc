@@ -28,6 +28,10 @@ uint64_t hashOf(const CellLabelHyperparameters& h) {
                  h.beta, h.coupling, h.tau, h.local_rate, h.visits_per_cell});
 }
 
+int32_t sizeOf(const std::vector<world::WordGroup>& groups) {
+  return groups.empty() ? 0 : groups.back().first + groups.back().size;
+}
+
 }  // namespace
 
 std::unique_ptr<Learner> makeLearner(const LearnerHyperparameters& hyperparameters,
@@ -36,9 +40,18 @@ std::unique_ptr<Learner> makeLearner(const LearnerHyperparameters& hyperparamete
   if (const auto* cells = std::get_if<CellLabelHyperparameters>(&hyperparameters)) {
     return std::make_unique<CellLabelModel>(*cells, groups, seed, robot);
   }
-  const int32_t vocabulary_size = groups.empty() ? 0 : groups.back().first + groups.back().size;
-  return std::make_unique<TopicModel>(std::get<Hyperparameters>(hyperparameters), vocabulary_size, seed,
+  return std::make_unique<TopicModel>(std::get<Hyperparameters>(hyperparameters), sizeOf(groups), seed,
                                       robot);
+}
+
+std::unique_ptr<Learner> resumeLearner(const LearnerHyperparameters& hyperparameters,
+                                       const std::vector<world::WordGroup>& groups, uint64_t seed,
+                                       world::RobotId robot, std::span<const uint8_t> checkpoint) {
+  if (const auto* cells = std::get_if<CellLabelHyperparameters>(&hyperparameters)) {
+    return std::make_unique<CellLabelModel>(CellLabelModel::resumed(*cells, groups, seed, robot, checkpoint));
+  }
+  return std::make_unique<TopicModel>(TopicModel::resumed(std::get<Hyperparameters>(hyperparameters),
+                                                          sizeOf(groups), seed, robot, checkpoint));
 }
 
 uint64_t fingerprint(const LearnerHyperparameters& hyperparameters) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <variant>
 #include <vector>
 
@@ -23,6 +24,13 @@ using LearnerHyperparameters = std::variant<Hyperparameters, CellLabelHyperparam
 std::unique_ptr<Learner> makeLearner(const LearnerHyperparameters& hyperparameters,
                                      const std::vector<world::WordGroup>& groups, uint64_t seed,
                                      world::RobotId robot);
+
+/// The learner that wrote the checkpoint, given what it was made with.
+/// @throws std::runtime_error for bytes that are damaged, of another version, or of a learner that was made
+///         with something else; std::invalid_argument as makeLearner().
+std::unique_ptr<Learner> resumeLearner(const LearnerHyperparameters& hyperparameters,
+                                       const std::vector<world::WordGroup>& groups, uint64_t seed,
+                                       world::RobotId robot, std::span<const uint8_t> checkpoint);
 
 /// Equal exactly when kind and every knob are equal (but for hash collisions).
 uint64_t fingerprint(const LearnerHyperparameters& hyperparameters);

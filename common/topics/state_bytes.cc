@@ -36,6 +36,11 @@ std::vector<uint8_t> StateWriter::finish() && {
   return std::move(bytes_);
 }
 
+void StateWriter::bytes(std::span<const uint8_t> bytes) {
+  u64(bytes.size());
+  bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+}
+
 void StateWriter::put(uint64_t value, int num_bytes) {
   for (int i = 0; i < num_bytes; ++i) bytes_.push_back(static_cast<uint8_t>(value >> 8 * i));
 }
@@ -62,6 +67,13 @@ size_t StateReader::count(size_t least_bytes) {
   const uint64_t number = u64();
   demand(number <= bytes_.size() / least_bytes, "a count is larger than what follows");
   return static_cast<size_t>(number);
+}
+
+std::span<const uint8_t> StateReader::bytes() {
+  const size_t number = count(1);
+  const auto part = bytes_.first(number);
+  bytes_ = bytes_.subspan(number);
+  return part;
 }
 
 void StateReader::demand(bool holds, const std::string& what) const {

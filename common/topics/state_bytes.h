@@ -20,6 +20,9 @@ class StateWriter {
   void u32(uint32_t value) { put(value, 4); }
   void i32(int32_t value) { u32(static_cast<uint32_t>(value)); }
 
+  /// Bytes of another's, and how many they are.
+  void bytes(std::span<const uint8_t> bytes);
+
   /// All that was written, with its checksum.
   std::vector<uint8_t> finish() &&;
 
@@ -46,6 +49,10 @@ class StateReader {
   /// follow.
   /// @throws std::runtime_error for more than that.
   size_t count(size_t least_bytes);
+
+  /// What StateWriter::bytes() wrote: a part of what is read.
+  /// @throws std::runtime_error for more than follows.
+  std::span<const uint8_t> bytes();
 
   /// @throws std::runtime_error naming `what` unless `holds`.
   void demand(bool holds, const std::string& what) const;

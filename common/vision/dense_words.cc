@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "shoal/vision/dense_words.h"
 
+#include <algorithm>
+#include <array>
 #include <stdexcept>
 #include <string>
 
@@ -76,6 +78,20 @@ world::WordsInCells DenseWords::extract(const world::Observation& observation, c
     }
   }
   return placeWords(words, observation, grid);
+}
+
+std::vector<int64_t> DenseWords::learnt() const {
+  const std::array<int64_t, 4> state = correction_.state();
+  return {state.begin(), state.end()};
+}
+
+void DenseWords::resume(std::span<const int64_t> learnt) {
+  std::array<int64_t, 4> state{};
+  if (learnt.size() != state.size()) {
+    throw std::invalid_argument("a correction has 4 numbers, got " + std::to_string(learnt.size()));
+  }
+  std::ranges::copy(learnt, state.begin());
+  correction_.restore(state);
 }
 
 }  // namespace shoal::vision

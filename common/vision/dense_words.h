@@ -27,6 +27,9 @@ class DenseWords : public WordExtractor {
   ///         wide or high; such an observation does not count.
   world::WordsInCells extract(const world::Observation& observation, const world::Grid& grid) override;
 
+  std::vector<int64_t> learnt() const override;
+  void resume(std::span<const int64_t> learnt) override;
+
  private:
   std::vector<DenseSearch> searches_;  // by kind
   std::vector<world::WordGroup> groups_;

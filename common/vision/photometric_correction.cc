@@ -2,6 +2,8 @@
 #include "shoal/vision/photometric_correction.h"
 
 #include <algorithm>
+#include <stdexcept>
+#include <string>
 
 #include "shoal/demand.h"
 #include "shoal/vision/fixed_math.h"
@@ -40,6 +42,18 @@ void PhotometricCorrection::observe(const cv::Mat& bgr) {
     sum_of_means_[c] += sum / (int64_t{bgr.rows} * bgr.cols);
   }
   ++num_images_;
+}
+
+void PhotometricCorrection::restore(const std::array<int64_t, 4>& state) {
+  const int64_t images = state[3];
+  for (size_t c = 0; c < 3; ++c) {
+    if (images < 0 || images > INT32_MAX || state[c] < 0 || state[c] > images * (powerOf(255) + 1)) {
+      throw std::invalid_argument("a mean of " + std::to_string(state[c]) + " over " +
+                                  std::to_string(images) + " images is not a correction's");
+    }
+  }
+  sum_of_means_ = {state[0], state[1], state[2]};
+  num_images_ = images;
 }
 
 ChannelResponses PhotometricCorrection::responses() const {

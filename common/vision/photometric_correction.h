@@ -42,6 +42,15 @@ class PhotometricCorrection {
   /// @param bgr  CV_8UC3, not empty, at most 2^28 pixels. Cost: one pass.
   void observe(const cv::Mat& bgr);
 
+  /// All it has learnt: one number a channel and the number of images.
+  std::array<int64_t, 4> state() const {
+    return {sum_of_means_[0], sum_of_means_[1], sum_of_means_[2], num_images_};
+  }
+
+  /// What another had learnt, in place of its own.
+  /// @throws std::invalid_argument for numbers that no images give.
+  void restore(const std::array<int64_t, 4>& state);
+
   /// The correction by all images so far. With none, values stay as they are (in steps of 1/16).
   ChannelResponses responses() const;
 

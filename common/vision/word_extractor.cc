@@ -11,6 +11,13 @@
 
 namespace shoal::vision {
 
+void WordExtractor::resume(std::span<const int64_t> learnt) {
+  if (!learnt.empty()) {
+    throw std::invalid_argument("these words learn nothing from images, got " +
+                                std::to_string(learnt.size()) + " numbers");
+  }
+}
+
 std::unique_ptr<WordExtractor> makeWordExtractor(const std::string& profile) {
   return makeWordExtractor(profile, profile == "best" ? shippedDenseVocabulary() : shippedOrbVocabulary());
 }

@@ -32,6 +32,13 @@ class WordExtractor {
   /// @throws std::invalid_argument when images of the observation differ in size or type.
   virtual world::WordsInCells extract(const world::Observation& observation, const world::Grid& grid) = 0;
 
+  /// What it has learnt about the robot's camera, as numbers: an extractor of the same fingerprint that
+  /// resumes from them goes on as this one does.
+  virtual std::vector<int64_t> learnt() const { return {}; }
+
+  /// @throws std::invalid_argument for what learnt() does not give.
+  virtual void resume(std::span<const int64_t> learnt);
+
   int32_t vocabularySize() const { return groups().back().first + groups().back().size; }
 };
 

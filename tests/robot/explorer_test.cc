@@ -2,8 +2,10 @@
 #include "shoal/robot/explorer.h"
 
 #include <numeric>
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -83,6 +85,63 @@ TEST_P(EveryExplorer, EqualMissionsAreEqualAndSeedsAndRobotsDiffer) {
   EXPECT_TRUE(same(belief, beliefAfter(options(), images)));
   EXPECT_FALSE(same(belief, beliefAfter(options(0, 2), images)));
   EXPECT_FALSE(same(belief, beliefAfter(options(1), images)));
+}
+
+std::string complaint(Explorer& explorer, const std::vector<uint8_t>& checkpoint) {
+  try {
+    explorer.restore(checkpoint);
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+// Checkpoints hold all there is, so equal checkpoints are equal minds. The camera's correction counts every
+// image so far: an explorer that forgot it would see other words.
+TEST_P(EveryExplorer, ResumingEqualsNeverHavingStopped) {
+  std::vector<world::Observation> images = twoImages();
+  for (int n = 0; n < 2; ++n) {
+    world::Observation again = images[static_cast<size_t>(n)];
+    again.number = 2 + n;
+    images[static_cast<size_t>(n)].color.convertTo(again.color, -1, 0.5);
+    images.push_back(again);
+  }
+  Explorer never(options());
+  std::optional<Explorer> stopped(options());
+  EXPECT_EQ(complaint(*stopped, never.checkpoint()), "");  // before the first image
+  for (const auto& image : images) {
+    never.observe(image);
+    stopped->observe(image);
+    const std::vector<uint8_t> kept = stopped->checkpoint();
+    ASSERT_EQ(kept, never.checkpoint()) << image.number;
+    stopped.emplace(options());
+    EXPECT_EQ(complaint(*stopped, kept), "");
+    EXPECT_EQ(stopped->lastObservation(), image.number);
+    const mapping::LocalBelief a = stopped->belief(), b = never.belief();
+    EXPECT_TRUE(a.version == b.version && a.topics == b.topics && a.cells == b.cells);
+    EXPECT_EQ(stopped->droppedWords(), never.droppedWords());
+  }
+}
+
+TEST_P(EveryExplorer, RefusesCheckpointsOfOthersAndDamagedOnesAndStaysAsItWas) {
+  const auto images = twoImages();
+  Explorer explorer(options());
+  explorer.observe(images[0]);
+  const std::vector<uint8_t> whole = explorer.checkpoint();
+  Explorer other_seed(options(0, 2)), other_robot(options(1));
+  EXPECT_NE(complaint(other_seed, whole).find("another robot, seed"), std::string::npos);
+  EXPECT_NE(complaint(other_robot, whole).find("another robot, seed"), std::string::npos);
+  ExplorerOptions coarse = options();
+  coarse.cell_size_m = 1.6;
+  Explorer other_cells(coarse);
+  EXPECT_NE(complaint(other_cells, whole).find("cell size"), std::string::npos);
+  for (size_t at = 0; at < whole.size(); at += 997) {
+    std::vector<uint8_t> broken = whole;
+    broken[at] ^= 4;
+    EXPECT_NE(complaint(explorer, broken), "") << at;
+    EXPECT_NE(complaint(explorer, {whole.begin(), whole.begin() + static_cast<ptrdiff_t>(at)}), "") << at;
+  }
+  EXPECT_EQ(explorer.checkpoint(), whole);
 }
 
 TEST(ExplorerTest, OnlyARobotThatLabelsWordsAdoptsTopics) {

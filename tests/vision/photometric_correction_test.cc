@@ -44,6 +44,22 @@ TEST(PhotometricCorrectionTest, ScalesEveryChannelByItsDefinition) {
   }
 }
 
+TEST(PhotometricCorrectionTest, GoesOnFromItsState) {
+  PhotometricCorrection seen, resumed;
+  seen.observe(cv::Mat(9, 7, CV_8UC3, cv::Scalar(10, 200, 90)));
+  resumed.restore(seen.state());
+  EXPECT_EQ(resumed.responses(), seen.responses());
+  for (PhotometricCorrection* correction : {&seen, &resumed})
+    correction->observe(cv::Mat(9, 7, CV_8UC3, cv::Scalar(255, 1, 0)));
+  EXPECT_EQ(resumed.responses(), seen.responses());
+  EXPECT_EQ(resumed.state(), seen.state());
+  for (const std::array<int64_t, 4>& lie :
+       {std::array<int64_t, 4>{1, 1, 1, -1}, {-1, 1, 1, 1}, {1, 1, 1, 0}, {1, 1, int64_t{1} << 60, 9}}) {
+    EXPECT_THROW(resumed.restore(lie), std::invalid_argument);
+  }
+  EXPECT_EQ(resumed.state(), seen.state());
+}
+
 TEST(PhotometricCorrectionTest, LeavesPicturesAloneBeforeTheFirst) {
   const ChannelResponses responses = PhotometricCorrection().responses();
   for (size_t c = 0; c < 3; ++c) {
