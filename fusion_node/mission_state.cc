@@ -88,10 +88,12 @@ void MissionState::hear(const comms::Packet& packet, comms::Stats& stats) {
     }
     case wire::MessageKind::kTopics:
     case wire::MessageKind::kBrick:
-    case wire::MessageKind::kCertainty: {
+    case wire::MessageKind::kCertainty:
+    case wire::MessageKind::kEdit: {
       const auto piece = wire::decodePiece(header->kind, packet.bytes);
       if (!piece) return stats.countRejected(wire::name(piece.error()));
-      if (name(piece->key.robot) != channel->node) return stats.countRejected("wrong sender");
+      const bool is_edit = piece->key.robot == mapping::kOperators;  // whoever made it, any node may say it
+      if (!is_edit && name(piece->key.robot) != channel->node) return stats.countRejected("wrong sender");
       switch (apply(*piece)) {
         case mapping::Applied::kConflict:
           return stats.countRejected("conflict");

@@ -12,12 +12,17 @@
 #include "fusion_node/process.h"
 #include "shoal/comms/channels.h"
 #include "shoal/mapping/atomic_file.h"
+#include "shoal/mapping/edit_question.h"
+#include "shoal/mapping/edits_answer.h"
+#include "shoal/mapping/edits_file.h"
+#include "shoal/mapping/judgement.h"
 #include "shoal/mapping/map_files.h"
 #include "shoal/mapping/questions.h"
 #include "shoal/wire/labels_codec.h"
 #include "shoal/wire/map_codec.h"
 #include "shoal/wire/matches_codec.h"
 #include "shoal/wire/message_kind.h"
+#include "shoal/wire/piece_codec.h"
 
 namespace shoal::fusion_node {
 namespace {
@@ -47,6 +52,7 @@ Node::Node(const NodeOptions& options, comms::Bus& link, comms::Bus& local)
       sender_(link, &local,
               senderOptions(options.budget, [this](int64_t now_us) { return heartbeat(now_us); })) {
   if (!options.state_dir.empty()) {
+    loadEdits();
     queries_.emplace(options.state_dir, [this](const Json& question) { return answer(question); });
   }
 }
@@ -130,7 +136,50 @@ comms::Packet Node::heartbeat(int64_t now_us) {
   return {channel, wire::encode(h, wire::maxPayload(channel.size()))};
 }
 
-nlohmann::ordered_json Node::answer(const Json& question) {
+void Node::loadEdits() {
+  const std::string path = options_.state_dir + "/edits.json";
+  try {
+    for (const mapping::Edit& edit : mapping::readEdits(path, options_.mission)) {
+      state_.apply(mapping::pieceOf(edit));
+      offer(edit);
+    }
+  } catch (const std::runtime_error& error) {
+    spdlog::warn("edits of before are left out: {}", error.what());
+  }
+}
+
+// Said again and again, as all pieces are.
+void Node::offer(const mapping::Edit& edit) {
+  const mapping::Piece piece = mapping::pieceOf(edit);
+  const auto& index = piece.key.index;
+  sender_.offer(
+      comms::TrafficClass::kMatches,
+      "EDIT/" + mapping::toText(edit.id) + "/" + std::to_string(index[1]) + "/" + std::to_string(index[2]),
+      {comms::channelName(options_.name, "EDIT"), wire::encode(piece, options_.mission, world::Timestamp{})});
+}
+
+Json Node::answerEdit(const Json& question) {
+  try {
+    const world::Timestamp now{std::max(clock_.now(), state_.latestTime().us)};
+    const mapping::Edit edit =
+        mapping::makeEdit(state_.refreshMap(), state_.beliefs(), question, options_.name, now);
+    std::vector<mapping::Edit> all = mapping::editsOf(state_.beliefs());
+    all.push_back(edit);
+    mapping::writeFileAtomically(options_.state_dir + "/edits.json",
+                                 mapping::editsJson(options_.mission, all));
+    if (state_.apply(mapping::pieceOf(edit)) == mapping::Applied::kRejected) {
+      return {{"error", "too many edits are held already"}};
+    }
+    offer(edit);
+    spdlog::info("{}: {}", mapping::toText(edit.id), mapping::sentenceOf(edit));
+    return mapping::editAnswer(edit, state_.beliefs());
+  } catch (const std::exception& error) {  // a peer's text, or a disk that is full
+    return {{"error", error.what()}};
+  }
+}
+
+Json Node::answer(const Json& question) {
+  if (mapping::isEdit(question)) return answerEdit(question);
   state_.refreshMap();
   const mapping::MissionView view = state_.view();
   const auto beliefs = [this]() -> const mapping::BeliefStore& { return state_.beliefs(); };
@@ -151,6 +200,10 @@ void Node::finish() {
   mapping::writeFileAtomically(options_.out_dir + "/global_map.csv",
                                mapping::globalMapCsv(state_.map(), grid));
   mapping::writeFileAtomically(options_.out_dir + "/labels.csv", mapping::labelsCsv(state_.map(), grid));
+  if (const auto edits = mapping::editsOf(state_.beliefs()); !edits.empty()) {
+    mapping::writeFileAtomically(options_.out_dir + "/edits.json",
+                                 mapping::editsJson(options_.mission, edits));
+  }
   spdlog::info("map of {} cells, {} labels written to {}", state_.map().cells.size(),
                state_.map().labels.size(), options_.out_dir);
 }

@@ -26,7 +26,8 @@ struct NodeOptions {
 };
 
 /// A fusion node: hears everybody, fuses when something changed, tells the link what matches what and the
-/// local bus how the map looks, and answers questions.
+/// local bus how the map looks, answers questions, and says what its operator decided: edits are kept in
+/// `edits.json` of the state folder before they are acknowledged, and come back from there.
 class Node {
  public:
   /// `link` and `local` outlive the node.
@@ -46,6 +47,9 @@ class Node {
   comms::Packet heartbeat(int64_t now_us);
   void publishMap();
   nlohmann::ordered_json answer(const nlohmann::ordered_json& question);
+  nlohmann::ordered_json answerEdit(const nlohmann::ordered_json& question);
+  void loadEdits();
+  void offer(const mapping::Edit& edit);
   int64_t wallMs() const;
 
   NodeOptions options_;

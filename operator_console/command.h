@@ -28,6 +28,8 @@ void addWhyCommand(CLI::App& app, Action& chosen);
 void addDiffCommand(CLI::App& app, Action& chosen);
 /// node R03: what a node has told.
 void addNodeCommand(CLI::App& app, Action& chosen);
+/// name, link, unlink, exclude, undo, and edits, which lists them.
+void addEditCommands(CLI::App& app, Action& chosen);
 /// completion SHELL: a script that completes commands and flags.
 void addCompletionCommand(CLI::App& app, Action& chosen);
 void addEvaluateCommand(CLI::App& app, Action& chosen);

@@ -39,6 +39,7 @@ int main(int argc, char** argv) {
   console::addWhyCommand(app, chosen);
   console::addDiffCommand(app, chosen);
   console::addNodeCommand(app, chosen);
+  console::addEditCommands(app, chosen);
   console::addCompletionCommand(app, chosen);
   console::addUnbuiltCommands(app, chosen);
   try {

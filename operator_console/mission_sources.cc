@@ -2,6 +2,7 @@
 #include "operator_console/mission_sources.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -14,6 +15,9 @@
 #include "shoal/eval/evaluation.h"
 #include "shoal/mapping/atomic_file.h"
 #include "shoal/mapping/belief_pieces.h"
+#include "shoal/mapping/edit_question.h"
+#include "shoal/mapping/edits_answer.h"
+#include "shoal/mapping/edits_file.h"
 #include "shoal/mapping/fusion.h"
 #include "shoal/mapping/map_files.h"
 #include "shoal/mapping/questions.h"
@@ -54,7 +58,27 @@ Json readSummary(const std::string& dir) {
 
 }  // namespace
 
-mapping::MissionView viewOfRun(const std::string& dir) {
+std::string editsPathOf(const Where& where) {
+  if (!where.run.empty()) return where.run + "/edits.json";
+  const std::filesystem::path log = where.log;
+  if (log.filename() == "mission.lcmlog") return log.parent_path() / "edits.json";  // as in a run
+  return where.log + ".edits.json";
+}
+
+namespace {
+
+// What the robots' own files add up to, and what was decided since.
+mapping::BeliefStore storeOfRun(const std::string& dir, const world::Grid& grid,
+                                const std::vector<mapping::Edit>& edits) {
+  mapping::BeliefStore store;
+  for (const mapping::LocalBelief& belief : eval::readRun(dir, grid).robots) {
+    for (const mapping::Piece& piece : mapping::wholePieces(belief)) store.apply(piece);
+  }
+  for (const mapping::Edit& edit : edits) store.apply(mapping::pieceOf(edit));
+  return store;
+}
+
+mapping::MissionView filesOfRun(const std::string& dir) {
   const Json summary = readSummary(dir);
   mapping::MissionView view;
   try {
@@ -70,7 +94,36 @@ mapping::MissionView viewOfRun(const std::string& dir) {
   return view;
 }
 
+}  // namespace
+
+mapping::MissionView viewOfRun(const std::string& dir) {
+  mapping::MissionView view = filesOfRun(dir);
+  const Where where{.node = {}, .run = dir, .log = {}, .matcher = matching::usualMatcher()};
+  const auto edits = mapping::readEdits(editsPathOf(where), view.mission);
+  if (edits.empty()) return view;
+  const uint64_t of_state = view.map.state_digest;
+  view.map = mapping::fuse(storeOfRun(dir, world::Grid(view.cell_size_m), edits), matcherOf(where));
+  view.map.state_digest = of_state;
+  view.map_digest = view.map.digest();
+  return view;
+}
+
 namespace {
+
+// Makes an edit and adds it to the file. Every answer from now on has it.
+Json editInFile(const Where& where, const mapping::MissionView& view, mapping::BeliefStore& beliefs,
+                const mapping::GlobalMap& map, const Json& question) {
+  const std::string path = editsPathOf(where);
+  std::vector<mapping::Edit> edits = mapping::readEdits(path, view.mission);
+  world::Timestamp now;
+  for (const mapping::NodeStatus& node : view.nodes)
+    now.us = std::max<int64_t>(now.us, std::llround(node.heard_s * 1e6));
+  const mapping::Edit edit = mapping::makeEdit(map, beliefs, question, "CONSOLE", now);
+  edits.push_back(edit);
+  mapping::writeFileAtomically(path, mapping::editsJson(view.mission, edits));
+  beliefs.apply(mapping::pieceOf(edit));
+  return mapping::editAnswer(edit, beliefs);
+}
 
 bool showSameLabels(const mapping::GlobalMap& a, const mapping::GlobalMap& b) {
   return std::ranges::equal(a.cells, b.cells, [](const mapping::GlobalCell& x, const mapping::GlobalCell& y) {
@@ -84,11 +137,8 @@ Json askRun(const Where& where, const Json& question) {
   std::optional<mapping::BeliefStore> store;  // from the robots' own files, when it is needed
   witness.beliefs = [&]() -> const mapping::BeliefStore& {
     if (store) return *store;
-    store.emplace();
-    for (const mapping::LocalBelief& belief :
-         eval::readRun(where.run, world::Grid(view.cell_size_m)).robots) {
-      for (const mapping::Piece& piece : mapping::wholePieces(belief)) store->apply(piece);
-    }
+    store = storeOfRun(where.run, world::Grid(view.cell_size_m),
+                       mapping::readEdits(editsPathOf(where), view.mission));
     const mapping::GlobalMap again = mapping::fuse(*store, witness.matcher);
     if (!showSameLabels(again, view.map)) {
       spdlog::warn("{}: the robots' own files, matched with {}, do not give the labels of global_map.csv",
@@ -97,7 +147,19 @@ Json askRun(const Where& where, const Json& question) {
     view.map.correspondences = again.correspondences;  // the files of a map do not hold them
     return *store;
   };
-  return mapping::answer(witness, question);
+  if (!mapping::isEdit(question)) return mapping::answer(witness, question);
+  witness.beliefs();
+  return editInFile(where, view, *store, view.map, question);
+}
+
+// A recording, and what was decided since.
+RecordedMission recordingWithEdits(const Where& where) {
+  RecordedMission recorded = readRecording(where.log, where.matcher);
+  for (const mapping::Edit& edit : mapping::readEdits(editsPathOf(where), recorded.mission)) {
+    recorded.state.apply(mapping::pieceOf(edit));
+  }
+  recorded.state.refreshMap();
+  return recorded;
 }
 
 }  // namespace
@@ -133,16 +195,33 @@ std::string recordingOf(const Where& where) {
 mapping::MissionView viewOf(const Where& where) {
   if (!where.node.empty()) return viewOfNode(where.node);
   if (!where.run.empty()) return viewOfRun(where.run);
-  return readRecording(where.log, where.matcher).state.view();
+  return recordingWithEdits(where).state.view();
 }
+
+namespace {
+
+Json askFiles(const Where& where, const Json& question) {
+  if (!where.run.empty()) return askRun(where, question);
+  const RecordedMission recorded = recordingWithEdits(where);
+  const mapping::MissionView view = recorded.state.view();
+  if (mapping::isEdit(question)) {
+    mapping::BeliefStore beliefs = recorded.state.beliefs();
+    return editInFile(where, view, beliefs, view.map, question);
+  }
+  const auto beliefs = [&]() -> const mapping::BeliefStore& { return recorded.state.beliefs(); };
+  return mapping::answer({view, beliefs, where.matcher}, question);
+}
+
+}  // namespace
 
 Json ask(const Where& where, const Json& question) {
   if (!where.node.empty()) return fusion_node::askNode(where.node, question);
-  if (!where.run.empty()) return askRun(where, question);
-  const RecordedMission recorded = readRecording(where.log, where.matcher);
-  const mapping::MissionView view = recorded.state.view();
-  const auto beliefs = [&]() -> const mapping::BeliefStore& { return recorded.state.beliefs(); };
-  return mapping::answer({view, beliefs, where.matcher}, question);
+  try {
+    return askFiles(where, question);
+  } catch (const std::invalid_argument& error) {
+    if (!mapping::isEdit(question)) throw;
+    return {{"error", error.what()}};  // as a node says it
+  }
 }
 
 }  // namespace shoal::console

@@ -17,12 +17,16 @@ struct Where {
   matching::MatcherOptions matcher = matching::usualMatcher();  ///< with which a recording is fused
 };
 
-/// A finished run, from its files. @throws std::runtime_error naming the file that is missing or broken.
+/// A finished run, from its files; when something was decided (edits.json), fused anew from the robots' own.
+/// @throws std::runtime_error naming the file that is missing or broken.
 mapping::MissionView viewOfRun(const std::string& dir);
 
 /// The whole map with everything that is known, wherever it is asked of.
 /// @throws std::runtime_error as viewOfRun() and readRecording(), or when no node answers.
 mapping::MissionView viewOf(const Where& where);
+
+/// Where edits of a finished mission are kept: edits.json in a run's folder, or beside a recording.
+std::string editsPathOf(const Where& where);
 
 /// How the map of a run was matched, as its summary.json says; else what `where` says.
 matching::MatcherOptions matcherOf(const Where& where);
@@ -31,7 +35,8 @@ matching::MatcherOptions matcherOf(const Where& where);
 /// @throws std::runtime_error when there is none: a node keeps no history.
 std::string recordingOf(const Where& where);
 
-/// Answers any question of mapping/questions.h from wherever. What cannot be answered comes back as
+/// Answers any question of mapping/questions.h from wherever, and makes the edits of mapping/edit_question.h.
+/// What cannot be answered comes back as
 /// {"error": ...}. The matcher is matcherOf(where).
 nlohmann::ordered_json ask(const Where& where, const nlohmann::ordered_json& question);
 

@@ -7,6 +7,7 @@
 
 #include "operator_console/asking.h"
 #include "operator_console/command.h"
+#include "operator_console/terminal.h"
 
 namespace shoal::console {
 namespace {
@@ -47,9 +48,9 @@ void printNode(const Json& a) {
   fmt::print("{:>6} {:>9}  {:<16} {:>7} {:>9} {:>9}\n", "topic", "label", "name", "cells", "words",
              "since s");
   for (const Json& t : a["topics"]) {
-    fmt::print("{:>6} {:>9}  {:<16} {:>7} {:>9} {:>9.1f}\n", t["topic"].get<int>(), t["label"].get<int>(),
-               t["name"].get<std::string>(), t["cells"].get<int64_t>(), t["weight"].get<int64_t>(),
-               t["created_s"].get<double>());
+    fmt::print("{:>6} {:>9}  {} {:>7} {:>9} {:>9.1f}\n", t["topic"].get<int>(), t["label"].get<int>(),
+               shortened(t["name"].get<std::string>(), 16), t["cells"].get<int64_t>(),
+               t["weight"].get<int64_t>(), t["created_s"].get<double>());
   }
 }
 

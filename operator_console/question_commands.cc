@@ -42,8 +42,9 @@ void labels(Question& q) {
   for (const Json& row : a["labels"]) {
     const int label = row["label"];
     fmt::print(
-        "{:>9}  {:<14} {:>7} {:>10.1f} {:>15} {:>5.2f}  {}{}\n", label, row["name"].get<std::string>(),
-        row["cells"].get<int64_t>(), row["area_m2"].get<double>(),
+        "{:>9}  {} {:>7} {:>10.1f} {:>15} {:>5.2f}  {}{}\n", label,
+        shortened(row["name"].get<std::string>(), 14), row["cells"].get<int64_t>(),
+        row["area_m2"].get<double>(),
         fmt::format("{:.0f} - {:.0f}", row["first_seen_s"].get<double>(), row["last_seen_s"].get<double>()),
         row["certainty"].get<double>(),
         row["robots"].size() > 2 ? fmt::format("{} robots", row["robots"].size()) : joined(row["robots"]),

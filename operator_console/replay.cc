@@ -20,6 +20,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+std::vector<world::RobotId> robotsOf(const fusion_node::MissionState& state) {
+  std::vector<world::RobotId> robots = state.beliefs().robots();
+  std::erase(robots, mapping::kOperators);
+  return robots;
+}
+
 // The same state and another map: the recording does not say how its nodes matched.
 void addOtherMaps(const fusion_node::MissionState& state, std::vector<std::string>& lacking) {
   for (const auto& [node, heartbeat] : state.heartbeats()) {
@@ -62,7 +68,7 @@ Replay replay(const std::string& log, const std::string& out, const matching::Ma
   Replay replay{log, out, readRecording(log, matcher), {}, {}};
   const fusion_node::MissionState& state = replay.recorded.state;
   replay.lacking = lackingPieces(log, replay.recorded.mission, state.beliefs(), state.heartbeats());
-  for (const world::RobotId robot : state.beliefs().robots()) {
+  for (const world::RobotId robot : robotsOf(state)) {
     if (!state.heartbeats().contains(world::name(robot))) {
       replay.lacking.push_back(world::name(robot) + ": its heartbeats, which say whether this is all");
     }
@@ -79,7 +85,7 @@ Replay replay(const std::string& log, const std::string& out, const matching::Ma
   write("global_map.png", encodePng(render(state.map(), grid,
                                            fmt::format("mission {}, {} labels", replay.recorded.mission,
                                                        state.map().labels.size()))));
-  for (const world::RobotId robot : state.beliefs().robots()) {
+  for (const world::RobotId robot : robotsOf(state)) {
     write("robots/" + world::name(robot) + "/map.csv",
           mapping::beliefCsv(heardMap(state.beliefs(), robot), grid));
   }
@@ -107,7 +113,7 @@ std::string Replay::text() const {
   const fusion_node::MissionState& state = recorded.state;
   std::string text =
       fmt::format("mission {}: {} messages ({} refused), {} robots, {} cells, {} labels, in {}\n",
-                  recorded.mission, recorded.messages, recorded.refused, state.beliefs().robots().size(),
+                  recorded.mission, recorded.messages, recorded.refused, robotsOf(state).size(),
                   state.map().cells.size(), state.map().labels.size(), out);
   if (isWhole()) return text + "the recording holds all that the robots said they had\n";
   text += "the recording lacks\n";

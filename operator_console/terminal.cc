@@ -3,6 +3,8 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <cstdio>
 
 #include <spdlog/fmt/fmt.h>
@@ -18,6 +20,17 @@ std::string alarming(const std::string& text) {
 std::string swatch(const Rgb& color) {
   if (!isOnTerminal()) return "";
   return fmt::format("\033[48;2;{};{};{}m  \033[0m", color[0], color[1], color[2]);
+}
+
+std::string shortened(const std::string& text, size_t width) {
+  const auto begins = [](char c) { return (static_cast<uint8_t>(c) & 0xc0) != 0x80; };  // a code point
+  const auto columns = static_cast<size_t>(std::ranges::count_if(text, begins));
+  if (columns <= width) return text + std::string(width - columns, ' ');
+  size_t end = 0;
+  for (size_t seen = 0; end < text.size(); ++end) {
+    if (begins(text[end]) && ++seen == width) break;
+  }
+  return text.substr(0, end) + "~";
 }
 
 void clearTerminal() {

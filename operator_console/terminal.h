@@ -16,6 +16,9 @@ std::string alarming(const std::string& text);
 /// Two columns in a colour, on a terminal; else nothing.
 std::string swatch(const Rgb& color);
 
+/// The text in exactly `width` columns, one a code point: filled up with spaces, or cut and ended with "~".
+std::string shortened(const std::string& text, size_t width);
+
 /// Clears the terminal and goes to its top left corner; nothing when there is none.
 void clearTerminal();
 

@@ -34,6 +34,8 @@ comms::TrafficClass trafficOf(mapping::PieceKind kind) {
       return comms::TrafficClass::kTopics;
     case mapping::PieceKind::kBrick:
       return comms::TrafficClass::kBricks;
+    case mapping::PieceKind::kEdit:
+      return comms::TrafficClass::kMatches;
     case mapping::PieceKind::kCertainty:
       break;
   }

@@ -18,8 +18,19 @@ const std::vector<std::string> kColumns = {"x_m", "y_m", "z_m", "topic", "seen_s
 
 world::Timestamp fromSeconds(double seconds) { return {std::llround(seconds * 1e3) * 1000}; }
 
+// Four decimals that stand for the same step of 1/63 as the exact number: so the files of a run add up to the
+// map that was made from what travelled.
+std::string certaintyText(float certainty) {
+  const auto stepOf = [](float value) { return std::lround(std::clamp(value, 0.f, 1.f) * kCertaintySteps); };
+  const long step = stepOf(certainty);
+  double shown = std::round(static_cast<double>(certainty) * 1e4) / 1e4;
+  if (const long read = stepOf(static_cast<float>(shown)); read != step) shown += read < step ? 1e-4 : -1e-4;
+  return fixed(shown, 4);
+}
+
 std::string topicsJson(const LocalBelief& belief) {
   Json json;
+  if (belief.version.epoch > 0) json["epoch"] = belief.version.epoch;
   json["vocabulary"] = belief.groups.empty() ? 0 : belief.groups.back().first + belief.groups.back().size;
   json["groups"] = Json::array();
   for (const world::WordGroup& g : belief.groups) {
@@ -38,6 +49,7 @@ std::string topicsJson(const LocalBelief& belief) {
 }
 
 void readTopics(const Json& json, LocalBelief& belief) {
+  belief.version.epoch = json.value("epoch", 0);
   for (const Json& g : json.at("groups")) {
     belief.groups.push_back({g.at("name"), g.at("first"), g.at("size")});
   }
@@ -62,8 +74,8 @@ std::string beliefCsv(const LocalBelief& belief, const world::Grid& grid) {
   for (const BelievedCell& c : belief.cells) {
     const Eigen::Vector3d p = grid.centerOf(c.cell);
     csv += fixed(p.x(), 3) + ',' + fixed(p.y(), 3) + ',' + fixed(p.z(), 3) + ',' +
-           std::to_string(number(c.topic)) + ',' + fixed(c.seen.seconds(), 3) + ',' + fixed(c.certainty, 4) +
-           '\n';
+           std::to_string(number(c.topic)) + ',' + fixed(c.seen.seconds(), 3) + ',' +
+           certaintyText(c.certainty) + '\n';
   }
   return csv;
 }

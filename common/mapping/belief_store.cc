@@ -24,7 +24,8 @@ Applied BeliefStore::apply(const Piece& piece) {
   if (piece.version.epoch > sum->second.epoch) beginEpoch(robot, sum->second, piece.version.epoch);
   auto found = slots_.find(piece.key);
   if (found == slots_.end()) {
-    if (sum->second.pieces >= limits_.max_pieces_per_robot) return Applied::kRejected;
+    const int64_t most = robot == kOperators ? limits_.max_edits : limits_.max_pieces_per_robot;
+    if (sum->second.pieces >= most) return Applied::kRejected;
     ++sum->second.pieces;
     found = slots_.emplace(piece.key, Slot{}).first;
   }
@@ -71,6 +72,11 @@ std::vector<world::RobotId> BeliefStore::robots() const {
   std::vector<world::RobotId> robots;
   for (const auto& [robot, sum] : sums_) robots.push_back(robot);
   return robots;
+}
+
+int32_t BeliefStore::epochOf(world::RobotId robot) const {
+  const auto sum = sums_.find(robot);
+  return sum == sums_.end() ? -1 : sum->second.epoch;
 }
 
 uint64_t BeliefStore::digestOf(world::RobotId robot) const {

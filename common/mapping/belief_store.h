@@ -23,6 +23,7 @@ enum class Applied {
 struct StoreLimits {
   int32_t max_robots = 256;
   int64_t max_pieces_per_robot = 1'000'000;
+  int64_t max_edits = 10'000;
 };
 
 /// The replicated state: a join of versioned pieces. For each key it holds the newest version whose part 0
@@ -42,7 +43,18 @@ class BeliefStore {
       for (const auto& [part, piece] : slot.parts) visitor(piece);
   }
 
-  /// Robots that something is held of, ascending.
+  /// The same of one robot, or of kOperators.
+  template <typename Visitor>
+  void visitOf(world::RobotId robot, Visitor&& visitor) const {
+    for (auto at = slots_.lower_bound({robot, PieceKind{0}, {}});
+         at != slots_.end() && at->first.robot == robot; ++at)
+      for (const auto& [part, piece] : at->second.parts) visitor(piece);
+  }
+
+  /// The newest epoch of a robot that was heard of; -1 when it never was.
+  int32_t epochOf(world::RobotId robot) const;
+
+  /// Robots that something is held of, ascending; last kOperators, when there are edits.
   std::vector<world::RobotId> robots() const;
 
   /// Digest of one robot's share of the state; 0 when nothing is held. A sum over parts, so a robot can keep

@@ -6,6 +6,7 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "shoal/mapping/judgement.h"
 #include "shoal/mapping/label_identity.h"
 #include "shoal/mapping/stacked_topics.h"
 
@@ -20,12 +21,13 @@ world::GlobalLabel translate(const Translation& translation, world::RobotId robo
 }
 
 // Newest observer wins, the higher robot number among equals: Jamieson et al. §III, n*_b.
-std::vector<GlobalCell> newestCells(const BeliefStore& beliefs, const Translation& translation) {
+std::vector<GlobalCell> newestCells(const BeliefStore& beliefs, const Translation& translation,
+                                    const std::set<world::RobotId>& excluded) {
   std::vector<GlobalCell> cells;
   std::unordered_map<world::CellIndex, size_t, world::CellHash> place;  // looked up only, never iterated
   beliefs.visit([&](const Piece& piece) {
     const auto* brick = std::get_if<BrickPart>(&piece.content);
-    if (brick == nullptr) return;
+    if (brick == nullptr || excluded.contains(piece.key.robot)) return;
     for (const BrickCell& c : brick->cells) {
       const GlobalCell mine{c.cell, translate(translation, piece.key.robot, c.topic), piece.key.robot, c.seen,
                             0};
@@ -53,6 +55,19 @@ std::vector<GlobalCell> newestCells(const BeliefStore& beliefs, const Translatio
 
 bool containsRobot(const std::vector<world::RobotId>& robots, world::RobotId robot) {
   return std::ranges::find(robots, robot) != robots.end();
+}
+
+// Names stick to topics: a label has the newest name of its topics.
+void giveNames(std::vector<LabelSummary>& rows, const Judgement& judgement,
+               const std::vector<Correspondence>& correspondences) {
+  if (judgement.names.empty()) return;
+  std::map<world::GlobalLabel, std::vector<Topic>> topics;
+  for (const Correspondence& c : correspondences) topics[c.label].push_back({c.robot, c.topic});
+  for (LabelSummary& row : rows) {
+    topics[row.label].push_back(
+        {world::RobotId{number(row.label) / 10000}, world::TopicId{number(row.label) % 10000}});
+    row.name = judgement.nameOf(topics[row.label]);
+  }
 }
 
 std::vector<LabelSummary> summarize(const std::vector<GlobalCell>& cells, const StackedTopics& stacked,
@@ -84,7 +99,9 @@ std::vector<LabelSummary> summarize(const std::vector<GlobalCell>& cells, const 
 }  // namespace
 
 GlobalMap fuse(const BeliefStore& beliefs, const matching::MatcherOptions& options) {
-  const StackedTopics stacked = stack(beliefs);  // canonical order, whatever arrived first
+  const Judgement judgement = judge(beliefs);
+  const StackedTopics stacked =
+      stack(beliefs, judgement.excluded);  // canonical order, whatever arrived first
   const matching::Clustering clustering = matching::match(stacked.descriptors, options);
   const std::vector<world::GlobalLabel> labels = stableLabels(stacked, clustering);
 
@@ -95,8 +112,9 @@ GlobalMap fuse(const BeliefStore& beliefs, const matching::MatcherOptions& optio
     translation.emplace(std::pair(topic.robot, topic.id), labels[i]);
     map.correspondences.push_back({topic.robot, topic.id, labels[i]});
   }
-  map.cells = newestCells(beliefs, translation);
+  map.cells = newestCells(beliefs, translation, judgement.excluded);
   map.labels = summarize(map.cells, stacked, labels);
+  giveNames(map.labels, judgement, map.correspondences);
   map.state_digest = beliefs.digest();
   return map;
 }

@@ -12,7 +12,9 @@ namespace shoal::mapping {
 /// the higher robot number; g(b) = Π(g_n*(b)), §III).
 ///
 /// Pure: equal state and options, equal map, byte for byte, on every node.
-/// A cell whose topic has not been heard carries the label robot x 10000 + topic.
+/// What operators decided counts: names, links, robots that are left out (judgement.h). A robot that is
+/// excluded leaves the very map of a state that never held it. A cell whose topic has not been heard carries
+/// the label robot x 10000 + topic.
 ///
 /// @throws std::invalid_argument as matching::match() does for wrong options.
 /// Cost: O(cells log cells) plus the matching.

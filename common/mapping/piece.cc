@@ -37,6 +37,7 @@ class Hasher {
       add(c.steps);
     }
   }
+  void operator()(const Edit& edit) { add(static_cast<int64_t>(contentHash(edit))); }
   uint64_t hash() const { return hash_; }
 
  private:
@@ -57,5 +58,14 @@ uint64_t contentHash(const Piece& piece) {
   std::visit(hasher, piece.content);
   return hasher.hash();
 }
+
+PieceKey keyOf(const Edit& edit) {
+  const uint64_t hash = contentHash(edit);
+  return {kOperators,
+          PieceKind::kEdit,
+          {edit.id.counter, static_cast<int32_t>(hash >> 32), static_cast<int32_t>(hash & 0xffffffffu)}};
+}
+
+Piece pieceOf(const Edit& edit) { return {keyOf(edit), {}, 0, 1, edit}; }
 
 }  // namespace shoal::mapping

@@ -7,16 +7,20 @@
 #include <variant>
 #include <vector>
 
+#include "shoal/mapping/edit.h"
 #include "shoal/world/ids.h"
 #include "shoal/world/words_in_cells.h"
 
 namespace shoal::mapping {
 
 /// What kinds of state travel. The numbers are part of the wire format.
-enum class PieceKind : uint8_t { kTopic = 1, kBrick = 2, kCertainty = 3 };
+enum class PieceKind : uint8_t { kTopic = 1, kBrick = 2, kCertainty = 3, kEdit = 4 };
+
+/// What all operators decided is one share of the state, beside those of the robots.
+inline constexpr world::RobotId kOperators{10000};
 
 /// Names one unit of replicated state: a robot's topic (index = {topic id, 0, 0}), or a brick of its label
-/// map or of its certainty (index = brick coordinates).
+/// map or of its certainty (index = brick coordinates); or an operator's edit: keyOf().
 struct PieceKey {
   world::RobotId robot{};
   PieceKind kind = PieceKind::kTopic;
@@ -75,11 +79,15 @@ struct Piece {
   world::Version version;
   int32_t part = 0;       ///< in [0, num_parts)
   int32_t num_parts = 1;  ///< in [1, 255]
-  std::variant<TopicPart, BrickPart, CertaintyPart> content;
+  std::variant<TopicPart, BrickPart, CertaintyPart, Edit> content;
   bool operator==(const Piece&) const = default;
 };
 
 /// A hash of everything in a piece. Equal pieces, equal hash, on every machine.
 uint64_t contentHash(const Piece& piece);
+
+/// An edit as a piece. Its index holds its counter and a hash of its content, so that no two are mixed up.
+PieceKey keyOf(const Edit& edit);
+Piece pieceOf(const Edit& edit);
 
 }  // namespace shoal::mapping

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "shoal/mapping/area_answer.h"
+#include "shoal/mapping/edits_answer.h"
 #include "shoal/mapping/map_files.h"
 #include "shoal/mapping/node_answer.h"
 #include "shoal/mapping/why_answer.h"
@@ -50,7 +51,8 @@ Json answer(const Witness& witness, const Json& question) {
     if (query == "area") return areaAnswer(view, question.at("label"), filterOf(question));
     if (query == "why") return whyAnswer(view, witness.beliefs(), witness.matcher, question.at("label"));
     if (query == "node") return nodeAnswer(view, witness.beliefs(), question.at("node"));
-    return {{"error", "unknown question; questions are status, labels, map, at, area, why and node"}};
+    if (query == "edits") return editsAnswer(witness.beliefs());
+    return {{"error", "unknown question; questions are status, labels, map, at, area, why, node and edits"}};
   } catch (const Json::exception& error) {
     return {{"error", error.what()}};
   } catch (const std::invalid_argument& error) {

@@ -25,6 +25,8 @@ struct Witness {
 ///   area  label, and optionally min_m2, since_s, certainty
 ///   why   label           number as text, or name
 ///   node  node            "R03"
+///   edits
+/// Questions that change something are for makeEdit().
 /// A question is a peer's text: one that is unknown, incomplete or wrong is answered with {"error": ...}.
 nlohmann::ordered_json answer(const Witness& witness, const nlohmann::ordered_json& question);
 

@@ -25,10 +25,11 @@ std::vector<int32_t> commonLayout(const std::vector<HeardTopic>& topics) {
 
 }  // namespace
 
-StackedTopics stack(const BeliefStore& beliefs) {
+StackedTopics stack(const BeliefStore& beliefs, const std::set<world::RobotId>& excluded) {
   std::map<TopicKey, HeardTopic> heard;
   std::map<TopicKey, int64_t> cells;
   beliefs.visit([&](const Piece& piece) {
+    if (excluded.contains(piece.key.robot)) return;
     if (const auto* part = std::get_if<TopicPart>(&piece.content)) {
       if (part->weight <= 0) return;
       const world::TopicId id{piece.key.index[0]};

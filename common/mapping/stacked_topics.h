@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <set>
 #include <vector>
 
 #include "shoal/mapping/belief_store.h"
@@ -29,6 +30,7 @@ struct StackedTopics {
 /// Puts the heard topics together and picks those that take part in matching: they label at least one cell
 /// and were learned with the vocabulary layout that most robots share (ties go to the layout of the lowest
 /// robot). Others keep a label of their own.
-StackedTopics stack(const BeliefStore& beliefs);
+/// @param excluded  Robots that count as never heard.
+StackedTopics stack(const BeliefStore& beliefs, const std::set<world::RobotId>& excluded = {});
 
 }  // namespace shoal::mapping

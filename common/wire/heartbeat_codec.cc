@@ -34,7 +34,7 @@ std::string fault(const Heartbeat& h) {
   if (h.roster.size() > static_cast<size_t>(kMaxRoster)) return "the roster has more than 256 robots";
   int32_t last = -1;
   for (const auto& share : h.roster) {
-    if (number(share.robot) <= last || number(share.robot) > kMaxRobotNumber)
+    if (number(share.robot) <= last || number(share.robot) > kMaxShareNumber)
       return "the roster is not ascending";
     last = number(share.robot);
   }
@@ -70,9 +70,9 @@ bool readPayload(std::span<const uint8_t> payload, Heartbeat& h) {
   for (int64_t& bytes : h.class_bytes) bytes = static_cast<int64_t>(reader.varint());
   uint64_t next = 0;
   for (uint64_t runs = reader.varint(); runs > 0 && !reader.failed(); --runs) {
-    const uint64_t first = next + std::min<uint64_t>(reader.varint(), kMaxRobotNumber + 1);
+    const uint64_t first = next + std::min<uint64_t>(reader.varint(), kMaxShareNumber + 1);
     const uint64_t length = std::min<uint64_t>(reader.varint(), kMaxRoster) + 1;
-    if (first + length > kMaxRobotNumber + 1 || h.roster.size() + length > kMaxRoster) return false;
+    if (first + length > kMaxShareNumber + 1 || h.roster.size() + length > kMaxRoster) return false;
     for (uint64_t i = 0; i < length; ++i)
       h.roster.push_back({world::RobotId{static_cast<int32_t>(first + i)}, 0});
     next = first + length;

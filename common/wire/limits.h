@@ -16,6 +16,7 @@ constexpr size_t maxPayload(size_t channel_length) { return kMaxMessageBytes - c
 
 // Caps on what one message may make a receiver hold. No honest sender reaches them.
 inline constexpr int32_t kMaxRobotNumber = 9999;
+inline constexpr int32_t kMaxShareNumber = 10000;  // robots, and what operators decided: mapping::kOperators
 inline constexpr int32_t kMaxParts = 255;
 inline constexpr int32_t kMaxBrickCells = 16 * 16 * 16;
 inline constexpr int32_t kMaxWordsPerPart = 65536;

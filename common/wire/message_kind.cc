@@ -5,6 +5,7 @@
 
 #include <shoal/brick_t.hpp>
 #include <shoal/certainty_t.hpp>
+#include <shoal/edit_t.hpp>
 #include <shoal/heartbeat_t.hpp>
 #include <shoal/labels_t.hpp>
 #include <shoal/map_t.hpp>
@@ -47,6 +48,8 @@ size_t fixedBytesOf(MessageKind kind) {
       return fixedBytes<labels_t>();
     case MessageKind::kMap:
       return fixedBytes<map_t>();
+    case MessageKind::kEdit:
+      return fixedBytes<edit_t>();
   }
   SHOAL_DEMAND(false);
   return 0;
@@ -70,6 +73,8 @@ int64_t fingerprintOf(MessageKind kind) {
       return labels_t::getHash();
     case MessageKind::kMap:
       return map_t::getHash();
+    case MessageKind::kEdit:
+      return edit_t::getHash();
   }
   SHOAL_DEMAND(false);
   return 0;

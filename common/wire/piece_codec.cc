@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "shoal/wire/cut.h"
+#include "shoal/wire/edit_message.h"
 #include "shoal/wire/message.h"
 #include "shoal/wire/payloads.h"
 
@@ -108,6 +109,7 @@ Bytes encodeValid(const Piece& piece, int32_t mission, world::Timestamp time) {
     message.cells = static_cast<int16_t>(brick->cells.size());
     return pack(std::move(message), encodeBrick(*brick));
   }
+  if (const auto* edit = std::get_if<mapping::Edit>(&piece.content)) return encodeEdit(*edit, mission, time);
   const auto& certainty = std::get<CertaintyPart>(piece.content);
   auto message = frame<certainty_t>(piece, mission, time);
   setBrick(message, piece);
@@ -173,18 +175,23 @@ MessageKind kindOf(const Piece& piece) {
       return MessageKind::kTopics;
     case 1:
       return MessageKind::kBrick;
-    default:
+    case 2:
       return MessageKind::kCertainty;
+    default:
+      return MessageKind::kEdit;
   }
 }
 
 std::string fault(const Piece& piece) {
+  if (const auto* edit = std::get_if<mapping::Edit>(&piece.content)) return faultOf(*edit, piece);
   const int32_t robot = number(piece.key.robot);
   if (robot < 0 || robot > kMaxRobotNumber) return "robot numbers lie in [0, 9999]";
   if (piece.version.epoch < 0 || piece.version.observation < 0) return "versions are not negative";
   if (piece.num_parts < 1 || piece.num_parts > kMaxParts) return "1 to 255 parts";
   if (piece.part < 0 || piece.part >= piece.num_parts) return "parts are numbered from 0 to num_parts - 1";
-  return std::visit([&](const auto& content) { return faultOf(content, piece.key); }, piece.content);
+  if (const auto* topic = std::get_if<TopicPart>(&piece.content)) return faultOf(*topic, piece.key);
+  if (const auto* brick = std::get_if<BrickPart>(&piece.content)) return faultOf(*brick, piece.key);
+  return faultOf(std::get<CertaintyPart>(piece.content), piece.key);
 }
 
 Bytes encode(const Piece& piece, int32_t mission, world::Timestamp time) {
@@ -200,6 +207,7 @@ Bytes encode(const Piece& piece, int32_t mission, world::Timestamp time) {
 
 std::vector<Piece> cutToFit(const Piece& whole, size_t max_payload) {
   if (const std::string why = fault(whole); !why.empty()) throw std::invalid_argument("piece: " + why);
+  if (std::holds_alternative<mapping::Edit>(whole.content)) return {whole};  // always small
   if (whole.num_parts != 1) throw std::invalid_argument("piece: it is a part already");
   const auto cut = [&](const auto& part, size_t count, size_t max_run) {
     const auto make = [&](size_t begin, size_t end) {
@@ -255,6 +263,8 @@ Result<Piece> decodePiece(MessageKind kind, std::span<const uint8_t> bytes) {
       case MessageKind::kCertainty:
         return decodeCells<certainty_t, CertaintyPart>(bytes, PieceKind::kCertainty,
                                                        &certainty_t::certainties, decodeCertainty);
+      case MessageKind::kEdit:
+        return decodeEdit(bytes);
       default:
         return DecodeError::kWrongType;
     }

@@ -414,15 +414,30 @@ class ByHand(unittest.TestCase):
         for question in [("area", str(labels["labels"][0]["label"])), ("why", str(labels["labels"][0]["label"])),
                          ("node", "R00"), ("at", "100", "-100")]:
             check_schema(question[0], ask(*question, "--node", state))
+        label, other = (row["label"] for row in labels["labels"][:2])
+        for edit in [("name", str(label), "brain coral"), ("exclude", "R02"), ("link", str(label), str(other)), ("undo",),
+                     ("undo", "OPERATOR/2")]:
+            check_schema("edit", ask(*edit, "--node", state))
+        edits = ask("edits", "--node", state)
+        check_schema("edits", edits)
+        self.assertEqual([e["standing"] for e in edits["edits"]], ["in force", "undone", "undone", "in force", "in force"])
+        self.assertEqual({row["label"]: row["name"] for row in ask("labels", "--node", state)["labels"]}[label], "brain coral")
         exported = os.path.join(self.top, "live.csv")
         run(CONSOLE, "export", "--format", "csv", "--out", exported, "--node", state)
-        time.sleep(3)  # the two robots hear the last of each other
+
+        def agreed():  # the robots that fuse have heard the last of each other and what was decided
+            agreement = {n["name"]: n["agreement"] for n in ask("status", "--node", state)["nodes"]}
+            return [agreement[name] for name in ("R00", "R01")] == ["same", "same"]
+
+        self.wait_for(agreed)
         for process in robots:
             process.send_signal(signal.SIGTERM)
         for process in robots:
             self.assertEqual(process.wait(timeout=60), 0)
         node.send_signal(signal.SIGINT)
         self.assertEqual(node.wait(timeout=60), 0)
+        for folder in (out, os.path.join(out, "robots", "R00"), os.path.join(out, "robots", "R01")):
+            self.assertIn(f"{label},brain coral,".encode(), read(os.path.join(folder, "labels.csv")))
         of_operator = read(os.path.join(out, "global_map.csv"))
         self.assertGreater(len(of_operator), 1000)
         self.assertEqual(read(exported), of_operator)

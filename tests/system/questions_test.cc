@@ -141,6 +141,37 @@ TEST_F(QuestionsTest, WhatIsWrongIsNamed) {
   expectExit(2, "export --format geotiff --out x" + run(), "--format geotiff is not built yet");
 }
 
+// What is decided about a run and about its recording: the same file, the same map; of another log a file
+// beside it.
+TEST_F(QuestionsTest, DecisionsAboutAFinishedMissionAreKeptBesideIt) {
+  const std::string folder = folder_ + "/judged", run = " --run " + folder,
+                    log = " --log " + folder + "/mission.lcmlog";
+  SmallMission::write(folder);
+  const std::string map = mapping::readFile(folder + "/global_map.csv");
+  const auto exported = [&](const std::string& where) {
+    EXPECT_EQ(console("export --format csv --out " + folder + "/export.csv" + where).exit_code, 0);
+    return mapping::readFile(folder + "/export.csv");
+  };
+  EXPECT_EQ(ask("name 4 \"brain coral\"" + run)["id"], "CONSOLE/1");
+  EXPECT_EQ(ask("area \"brain coral\"" + log)["label"], 4);
+  EXPECT_EQ(ask("labels" + run), ask("labels" + log));
+  EXPECT_EQ(ask("exclude R01" + log)["id"], "CONSOLE/2");
+  const std::string without = exported(run);
+  EXPECT_EQ(without.find("R01"), std::string::npos);
+  EXPECT_EQ(without, exported(log));
+  EXPECT_EQ(console("undo" + run).output, "CONSOLE/3: CONSOLE/2 is undone\n");
+  EXPECT_EQ(exported(run), map);
+  EXPECT_EQ(exported(log), map);
+  EXPECT_EQ(ask("edits" + run), ask("edits" + log));
+  expectExit(1, "undo CONSOLE/2" + run, "undone already");
+  expectExit(1, "exclude R07" + log, "heard were R00 R01 R02");
+  expectExit(1, "link 4 4" + run, "twice");
+  std::filesystem::rename(folder + "/mission.lcmlog", folder + "/other.lcmlog");
+  EXPECT_EQ(ask("edits --log " + folder + "/other.lcmlog")["edits"].size(), 0u);
+  mapping::writeFileAtomically(folder + "/edits.json", "{");
+  expectExit(1, "labels" + run, folder + "/edits.json: ");
+}
+
 // At 10 s only R00 had spoken; at 30 s R01's later look had the shared column, and R02 a cell of its own.
 TEST_F(QuestionsTest, DiffTellsWhatWasHeldThen) {
   const Json diff = ask("diff 10 0:30" + log());

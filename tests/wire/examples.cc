@@ -100,6 +100,16 @@ std::vector<mapping::LabelSummary> labels() {
           {GlobalLabel{119999}, "Seegr\xc3\xa4ser", 7, {RobotId{11}}, {123'456'789}}};
 }
 
+// One of each operation.
+std::vector<std::pair<std::string, mapping::Edit>> edits() {
+  const mapping::TopicRef a{RobotId{1}, 0, TopicId{4}}, b{RobotId{11}, 2, TopicId{9999}};
+  return {{"edit_name", {{"OPERATOR", 1}, {50'000'000}, mapping::NameEdit{a, "Seegr\xc3\xa4ser"}}},
+          {"edit_link", {{"OPERATOR", 2}, {51'000'000}, mapping::LinkEdit{a, b, false}}},
+          {"edit_unlink", {{"SHIP2", 1}, {52'000'000}, mapping::LinkEdit{a, b, true}}},
+          {"edit_exclude", {{"SHIP2", 2}, {53'000'000}, mapping::ExcludeEdit{RobotId{7}}}},
+          {"edit_undo", {{"OPERATOR", 3}, {54'000'001}, mapping::UndoEdit{{"SHIP2", 2}}}}};
+}
+
 mapping::GlobalMap globalMap() {
   mapping::GlobalMap map;
   for (int x = -1; x <= 1; ++x) {
@@ -127,6 +137,9 @@ std::vector<Example> goldenExamples() {
   examples.push_back({"labels", MessageKind::kLabels, encodeLabels(labels(), 77, kMission, time).at(0)});
   examples.push_back({"map_0", MessageKind::kMap, encodeMap(globalMap(), 77, kMission, time).at(0)});
   examples.push_back({"map_1", MessageKind::kMap, encodeMap(globalMap(), 77, kMission, time).at(1)});
+  for (const auto& [name, edit] : edits()) {
+    examples.push_back({name, MessageKind::kEdit, encode(mapping::pieceOf(edit), kMission, time)});
+  }
   return examples;
 }
 
@@ -145,6 +158,7 @@ Bytes decodeAndEncode(MessageKind kind, std::span<const uint8_t> bytes, DecodeEr
     case MessageKind::kTopics:
     case MessageKind::kBrick:
     case MessageKind::kCertainty:
+    case MessageKind::kEdit:
       return again(decodePiece(kind, bytes),
                    [&](const Piece& piece) { return encode(piece, mission, time); });
     case MessageKind::kMatches:

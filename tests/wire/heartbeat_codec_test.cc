@@ -70,7 +70,7 @@ TEST(HeartbeatCodecTest, RefusesToEncodeNonsense) {
   broken([](Heartbeat& h) { h.cell_size_m = 0; });
   broken([](Heartbeat& h) { h.class_bytes[5] = -1; });
   broken([](Heartbeat& h) { h.roster = {{world::RobotId{2}, 0}, {world::RobotId{2}, 0}}; });
-  broken([](Heartbeat& h) { h.roster = {{world::RobotId{10000}, 0}}; });
+  broken([](Heartbeat& h) { h.roster = {{world::RobotId{10001}, 0}}; });
   EXPECT_THROW(encode(Heartbeat{}, 100), std::invalid_argument);
 }
 

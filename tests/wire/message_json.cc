@@ -53,7 +53,30 @@ json fields(const Heartbeat& h) {
   return j;
 }
 
+json fields(const mapping::Edit& edit) {
+  json j{{"operation", std::string(mapping::verbOf(edit))},
+         {"author", edit.id.author},
+         {"counter", edit.id.counter},
+         {"made_us", edit.time.us}};
+  const auto topic = [](const mapping::TopicRef& t) {
+    return json::array({number(t.robot), t.epoch, number(t.topic)});
+  };
+  if (const auto* name = std::get_if<mapping::NameEdit>(&edit.operation)) {
+    j["topics"] = json::array({topic(name->topic)});
+    j["name"] = name->text;
+  } else if (const auto* link = std::get_if<mapping::LinkEdit>(&edit.operation)) {
+    j["topics"] = json::array({topic(link->a), topic(link->b)});
+  } else if (const auto* exclude = std::get_if<mapping::ExcludeEdit>(&edit.operation)) {
+    j["robot"] = number(exclude->robot);
+  } else {
+    const mapping::EditId& undone = std::get<mapping::UndoEdit>(edit.operation).edit;
+    j["undone"] = json::array({undone.author, undone.counter});
+  }
+  return j;
+}
+
 json fields(const mapping::Piece& piece) {
+  if (const auto* edit = std::get_if<mapping::Edit>(&piece.content)) return fields(*edit);
   json j{{"part", piece.part},
          {"num_parts", piece.num_parts},
          {"robot", number(piece.key.robot)},
@@ -145,6 +168,7 @@ json messageJson(const std::string& channel, std::span<const uint8_t> bytes) {
     case MessageKind::kTopics:
     case MessageKind::kBrick:
     case MessageKind::kCertainty:
+    case MessageKind::kEdit:
       return told(decodePiece(header->kind, bytes));
     case MessageKind::kMatches:
       return told(decodeMatches(bytes));

@@ -160,6 +160,11 @@ class Recording(unittest.TestCase):
             self.assertEqual(words, expected["words"])
             self.assertEqual(len(words), 4, "one of five is retired")
 
+    def test_edits_are_in_the_order_in_which_they_count(self):
+        self.assertEqual([(m["author"], m["counter"], m["operation"]) for m in self.mission.edits()],
+                         [("SHORE", 1, "name"), ("SHORE", 2, "exclude"), ("OPERATOR", 1, "undo")])
+        self.assertEqual(self.mission.excluded(), [])
+
     def test_what_is_refused_is_counted_as_ours(self):
         self.assertEqual(dict(self.mission.refused), self.state["refused"])
 

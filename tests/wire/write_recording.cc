@@ -120,6 +120,12 @@ std::vector<comms::Packet> packetsOfRobots(Random& random) {
     if (whole.key.kind == mapping::PieceKind::kTopic) whole.key.index[0] += 1;
     for (const Piece& part : cutToFit(whole, kMaxBytes)) packets.push_back(packetOf(part, 80'000'000));
   }
+  for (const mapping::Edit& edit :
+       {mapping::Edit{{"SHORE", 1}, {50'000'000}, mapping::NameEdit{{RobotId{0}, 0, world::TopicId{1}}, "x"}},
+        mapping::Edit{{"SHORE", 2}, {51'000'000}, mapping::ExcludeEdit{RobotId{2}}},
+        mapping::Edit{{"OPERATOR", 1}, {52'000'000}, mapping::UndoEdit{{"SHORE", 2}}}}) {
+    packets.push_back({"SHOAL_OPERATOR_EDIT", encode(mapping::pieceOf(edit), kMission, {53'000'000})});
+  }
   for (size_t i = 0, n = packets.size(); i < n; i += 5) {  // said twice, later
     packets.push_back(packets[i]);
     stampTime(packets.back().bytes, {70'000'000});
@@ -201,10 +207,12 @@ nlohmann::json stateJson(const fusion_node::MissionState& state, const comms::St
                       {"refused", stats.rejected},
                       {"robots", nlohmann::json::object()}};
   for (const RobotId robot : state.beliefs().robots()) {
+    if (robot == mapping::kOperators) continue;
     json["robots"][name(robot)] = {
         {"digest", state.beliefs().digestOf(robot)}, {"cells", 0}, {"words", nlohmann::json::object()}};
   }
   state.beliefs().visit([&](const Piece& piece) {
+    if (piece.key.robot == mapping::kOperators) return;
     auto& robot = json["robots"][name(piece.key.robot)];
     if (const auto* brick = std::get_if<mapping::BrickPart>(&piece.content))
       robot["cells"] = robot["cells"].get<size_t>() + brick->cells.size();

@@ -2,7 +2,7 @@
 """The hashes by which nodes know that they hold the same."""
 import struct
 
-from .layout import MASK, STEPS
+from .layout import MASK, OPERATORS, STEPS
 
 
 def mix(x):
@@ -19,8 +19,32 @@ def hash_of(values, start=0):
     return start
 
 
+def _signed(bits):
+    return bits - 2**32 if bits >> 31 else bits
+
+
+def edit_hash(m):
+    """The hash of what an edit says: a decoded message of kind EDIT."""
+    def text(said):
+        return [len(said.encode()), *said.encode()]
+
+    values = text(m["author"]) + [m["counter"], m["made_us"]]
+    if m["operation"] == "name":
+        values += [0, *m["topics"][0], *text(m["name"])]
+    elif m["operation"] in ("link", "unlink"):
+        values += [1, *m["topics"][0], *m["topics"][1], int(m["operation"] == "unlink")]
+    elif m["operation"] == "exclude":
+        values += [2, m["robot"]]
+    else:
+        values += [3, *text(m["undone"][0]), m["undone"][1]]
+    return hash_of(values)
+
+
 def content_hash(m):
-    """The hash of a piece: a decoded message of kind TOPICS, BRICK or CERTAINTY."""
+    """The hash of a piece: a decoded message of kind TOPICS, BRICK, CERTAINTY or EDIT."""
+    if m["kind"] == "EDIT":
+        own = edit_hash(m)
+        return hash_of([OPERATORS, 4, m["counter"], _signed(own >> 32), _signed(own & 0xFFFFFFFF), 0, 0, 0, 1, own])
     number = {"TOPICS": 1, "BRICK": 2, "CERTAINTY": 3}[m["kind"]]
     index = (m["topic"], 0, 0) if number == 1 else (m["brick_x"], m["brick_y"], m["brick_z"])
     values = [m["robot"], number, *index, m["epoch"], m["observation"], m["part"], m["num_parts"]]

@@ -5,6 +5,7 @@ import struct
 MAX_MESSAGE = 1391
 MAX_TIME = 2**62 - 1
 MAX_ROBOT = MAX_TOPIC = 9999
+OPERATORS = 10000  # what operators decided is a share of the state beside those of the robots
 MAX_LABEL = 99999999
 MAX_VOCABULARY = 2**20
 FORMAT = 1
@@ -27,11 +28,15 @@ FIELDS = {
     "CERTAINTY": _PIECE + _BRICK + [("certainties", "h")],
     "MATCHES": [("map_digest", "q")] + _CHUNK + [("correspondences", "i")],
     "LABELS": [("map_digest", "q")] + _CHUNK + [("labels", "h")],
+    "EDIT": [
+        ("operation", "B"), ("made", "q"), ("counter", "i"), ("robot", "h"), ("epoch", "i"), ("topic", "h"),
+        ("other_robot", "h"), ("other_epoch", "i"), ("other_topic", "h"), ("undone", "i")],
     "MAP": [("map_digest", "q"), ("chunk", "i"), ("num_chunks", "i")] + _BRICK + [("fused_cells", "h")],
 }
 LAYOUT = {kind: struct.Struct(">qqiB" + "".join(code for _, code in fields) + "Hi") for kind, fields in FIELDS.items()}
 _LCM_TYPE = {"q": "int64_t", "i": "int32_t", "h": "int16_t", "B": "byte", "d": "double", "f": "float"}
 TRAFFIC_CLASSES = ["heartbeat", "matches", "topics", "bricks", "certainty", "local"]
+OPERATIONS = ["name", "link", "unlink", "exclude", "undo"]
 PHASES = ["flying", "landed", "leaving", "node"]
 UNSIGNED = {"own_digest", "state_digest", "map_digest", "map_of_state", "vocabulary"}
 

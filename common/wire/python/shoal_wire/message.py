@@ -53,7 +53,8 @@ def decode(data):
     HEARTBEAT: class_bytes {class: bytes}, roster [(robot, digest)]. TOPICS: created_us, weight, group_sizes,
     words [(word, count)]. In place of the counts, BRICK: cells [((x, y, z), topic, seen_us)]. CERTAINTY:
     certainties [((x, y, z), steps)]. MAP: fused_cells [((x, y, z), label, robot, seen_us, steps)]. MATCHES:
-    correspondences [(robot, topic, label)]. LABELS: labels [{label, name, cells, robots, first_seen_us}].
+    correspondences [(robot, topic, label)]. EDIT: operation, author, counter, made_us, and topics [[robot, epoch,
+    topic]], name, robot or undone [author, counter]. LABELS: labels [{label, name, cells, robots, first_seen_us}].
 
     Raises BadMessage, whatever the bytes are.
     """

@@ -2,9 +2,9 @@
 """The state that messages add up to, and the fused map."""
 import collections
 
-from .digests import content_hash, hash_of, map_digest
+from .digests import content_hash, edit_hash, hash_of, map_digest
 from .errors import BadFile, BadMessage, require
-from .layout import LAYOUT, MASK
+from .layout import LAYOUT, MASK, OPERATORS
 from .log import Log
 from .message import decode, parse_channel, peek, robot_name, unframe
 
@@ -50,6 +50,7 @@ class Mission:
         self._usable = None
         self._digests = {}
         self._lists = {}      # (node, kind) -> _Lists
+        self._edits = {}      # edit_hash -> decoded
 
     def hear(self, channel, data):
         """Takes in a message that came on a channel."""
@@ -69,6 +70,10 @@ class Mission:
             elif kind in ("TOPICS", "BRICK", "CERTAINTY"):
                 require(robot_name(m["robot"]) == node, node, "wrong sender")
                 self._hear_piece(m, data)
+            elif kind == "EDIT":  # whoever made it, any node may say it
+                m = decode(data)
+                require(len(self._edits) < 10000, "edits", "over limit")
+                self._edits.setdefault(edit_hash(m), m)
             else:
                 self._lists.setdefault((node, kind), _Lists()).hear(m, data)
             self.heard += 1
@@ -187,7 +192,24 @@ class Mission:
             own = self.digest(robot)
             if own:
                 digest = hash_of((int(robot[1:]), own), digest)
-        return digest
+        decided = sum(content_hash(m) for m in self._edits.values()) & MASK
+        return hash_of((OPERATORS, decided), digest) if decided else digest
+
+    def edits(self):
+        """What operators decided, as decoded messages of kind EDIT, in the order in which it counts."""
+        return sorted(self._edits.values(), key=lambda m: (m["made_us"], m["author"], m["counter"], edit_hash(m)))
+
+    def excluded(self):
+        """Names of the robots that do not count."""
+        undone, excluded = set(), set()
+        for m in reversed(self.edits()):
+            if (m["author"], m["counter"]) in undone:
+                continue
+            if m["operation"] == "undo":
+                undone.add(tuple(m["undone"]))
+            elif m["operation"] == "exclude":
+                excluded.add(robot_name(m["robot"]))
+        return sorted(excluded)
 
     def nodes_with_maps(self):
         return sorted({node for node, _ in self._lists})
@@ -222,7 +244,7 @@ class Mission:
         """A cell shows what the robot that saw it last says; of two at the same time, the higher number."""
         label_of = {(robot, topic): label for robot, topic, label in correspondences}
         cells = {}
-        for name in self.robots():
+        for name in set(self.robots()) - set(self.excluded()):
             robot = int(name[1:])
             for cell, (topic, seen_us, steps) in self.cells(name).items():
                 if cell not in cells or (cells[cell][2], cells[cell][1]) < (seen_us, robot):

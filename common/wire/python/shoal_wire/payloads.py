@@ -5,7 +5,8 @@ import re
 
 from . import cells
 from .errors import BadMessage, require
-from .layout import MAX_LABEL, MAX_ROBOT, MAX_TIME, MAX_TOPIC, MAX_VOCABULARY, PHASES, TRAFFIC_CLASSES
+from .layout import (MAX_LABEL, MAX_ROBOT, MAX_TIME, MAX_TOPIC, MAX_VOCABULARY, OPERATIONS, OPERATORS, PHASES,
+                     TRAFFIC_CLASSES)
 from .range_coder import Bits, Models
 
 
@@ -31,7 +32,7 @@ def _read_heartbeat(m, payload):
     for _ in range(varint()):
         first = follows + varint()
         follows = first + varint() + 1
-        require(follows <= MAX_ROBOT + 1 and len(robots) + follows - first <= 256, "roster", "bad payload")
+        require(follows <= OPERATORS + 1 and len(robots) + follows - first <= 256, "roster", "bad payload")
         robots += range(first, follows)
     require(len(payload) - at >= 4 * len(robots), "the payload ends early", "bad payload")
     require(len(payload) - at == 4 * len(robots), "bytes after the end of the payload", "not canonical")
@@ -141,11 +142,7 @@ def _read_labels(m, payload):
         length = bits.direct(7)
         require(length <= 64, "length of a name", "bad payload")
         raw = bytes(bits.tree(letters, 8) for _ in range(length))
-        try:
-            name = raw.decode()
-        except UnicodeDecodeError:
-            raise BadMessage("field out of range", "a name is not UTF-8") from None
-        require(not re.search("[\0-\x1f\x7f-\x9f]", name), "a name has control characters")
+        name = _name(raw)
         rows.append({"label": label, "name": name, "cells": cells, "robots": robots, "first_seen_us": first_seen})
     bits.end()
     m["labels"] = rows
@@ -171,5 +168,63 @@ def _read_map(m, payload):
     m["fused_cells"] = list(zip(cells.in_world(there, m), labels, robots, times, levels))
 
 
+def _read_edit(m, payload):
+    require(m["operation"] < len(OPERATIONS), "operation")
+    fields = {name: m.pop(name) for name in ("robot", "epoch", "topic", "other_robot", "other_epoch", "other_topic",
+                                             "undone")}
+    m["operation"] = operation = OPERATIONS[m["operation"]]
+    m["made_us"] = m.pop("made")
+    at = 0
+
+    def text():
+        nonlocal at
+        require(at < len(payload) and at + 1 + payload[at] <= len(payload), "the payload ends early", "bad payload")
+        raw, at = payload[at + 1:at + 1 + payload[at]], at + 1 + payload[at]
+        return raw
+
+    def author(raw):
+        require(re.fullmatch(b"[A-Z0-9]{1,16}", raw), "an author is 1 to 16 capitals and digits")
+        return raw.decode()
+
+    def topic(prefix):
+        t = [fields[prefix + name] for name in ("robot", "epoch", "topic")]
+        require(0 <= t[0] <= MAX_ROBOT and t[1] >= 0 and 0 <= t[2] <= MAX_TOPIC, "a topic")
+        used.update(prefix + name for name in ("robot", "epoch", "topic"))
+        return t
+
+    said, used = text(), set()
+    if operation in ("name", "undo"):
+        more = text()
+    require(at == len(payload), "bytes after the end of the payload", "bad payload")
+    m["author"] = author(said)
+    require(m["counter"] >= 1 and 0 <= m["made_us"] <= MAX_TIME, "counter or time")
+    if operation == "name":
+        m["topics"] = [topic("")]
+        m["name"] = _name(more)
+    elif operation in ("link", "unlink"):
+        m["topics"] = [topic(""), topic("other_")]
+        require(m["topics"][0] < m["topics"][1], "topics are not ascending")
+    elif operation == "exclude":
+        m["robot"] = fields["robot"]
+        require(0 <= m["robot"] <= MAX_ROBOT, "robot")
+        used.add("robot")
+    else:
+        m["undone"] = [author(more), fields["undone"]]
+        require(fields["undone"] >= 1, "undone")
+        used.add("undone")
+    require(all(value == 0 for name, value in fields.items() if name not in used), "an unused field", "not canonical")
+
+
+def _name(raw):
+    require(len(raw) <= 64, "a name is above 64 bytes")
+    try:
+        name = raw.decode()
+    except UnicodeDecodeError:
+        raise BadMessage("field out of range", "a name is not UTF-8") from None
+    require(not re.search("[\0-\x1f\x7f-\x9f]", name), "a name has control characters")
+    return name
+
+
 READ = {"HEARTBEAT": _read_heartbeat, "TOPICS": _read_topics, "BRICK": _read_brick, "CERTAINTY": _read_certainty,
-         "MATCHES": _read_matches, "LABELS": _read_labels, "MAP": _read_map}
+        "MATCHES": _read_matches, "LABELS": _read_labels, "MAP": _read_map,
+        "EDIT": _read_edit}
