@@ -34,6 +34,9 @@ void addEditCommands(CLI::App& app, Action& chosen);
 void addCompletionCommand(CLI::App& app, Action& chosen);
 void addEvaluateCommand(CLI::App& app, Action& chosen);
 void addReplayCommand(CLI::App& app, Action& chosen);
+/// spy: what is said on the link. doctor: would a mission work here?
+void addSpyCommand(CLI::App& app, Action& chosen);
+void addDoctorCommand(CLI::App& app, Action& chosen);
 void addReproduceCommand(CLI::App& app, Action& chosen);
 void addTuneCommand(CLI::App& app, Action& chosen);
 void addVerifyCommand(CLI::App& app, Action& chosen);

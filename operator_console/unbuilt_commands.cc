@@ -7,7 +7,7 @@
 namespace shoal::console {
 
 void addUnbuiltCommands(CLI::App& app, Action& chosen) {
-  for (const std::string name : {"serve", "spy", "doctor"}) {
+  for (const std::string name : {"serve"}) {
     CLI::App* command =
         app.add_subcommand(name, "not built yet")->group("")->prefix_command()->fallthrough(false);
     command->set_help_flag();

@@ -35,6 +35,7 @@ struct LcmBus::Impl {
   void onMessage(const lcm::ReceiveBuffer& buffer, const std::string& channel) noexcept;
 
   bool isKnown(const std::string& channel) const {
+    if (options.everything) return channel != "LCM_SELF_TEST";
     return options.channels.empty() ? parseChannel(channel).has_value()
                                     : std::ranges::find(options.channels, channel) != options.channels.end();
   }
@@ -99,9 +100,13 @@ LcmBus::LcmBus(const std::string& url, const LcmBusOptions& options) {
     if (subscription == nullptr) fail("subscribing failed");
     subscription->setQueueCapacity(capacity);
   };
-  if (options.channels.empty()) subscribe(kAllChannels, 0);  // unlimited: the bound is ours, with a counter
-  for (const std::string& channel : options.channels)
-    subscribe(channel, static_cast<int>(std::min<size_t>(options.max_queue, INT32_MAX)));
+  const int most = static_cast<int>(std::min<size_t>(options.max_queue, INT32_MAX));
+  if (options.everything) {
+    subscribe(".*", most);
+  } else if (options.channels.empty()) {
+    subscribe(kAllChannels, 0);  // unlimited: the bound is ours, with a counter
+  }
+  for (const std::string& channel : options.channels) subscribe(channel, most);
   impl_->fd = impl_->transport.getFileno();  // starts the receiving thread, with LCM's self test
   if (impl_->fd < 0) fail("the receiving thread did not start");
 }

@@ -17,6 +17,8 @@ struct LcmBusOptions {
   /// Instead of ours, these channels of others, as [A-Za-z0-9_]{1,63}: a robot's cameras. LCM then keeps at
   /// most max_queue messages for us as well, and drops the newest without a count.
   std::vector<std::string> channels = {};
+  /// Everybody's channels, but for LCM's own self test: to look on. Likewise.
+  bool everything = false;
   /// What LCM header, channel, NUL and payload may take together; for channels of others, where LCM cuts
   /// what is larger than a datagram. In [1400, 2^28].
   size_t max_message_bytes = kMaxMessageBytes;

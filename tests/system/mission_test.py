@@ -445,6 +445,27 @@ class ByHand(unittest.TestCase):
             self.assertEqual(read(os.path.join(out, "robots", f"R0{r}", "global_map.csv")), of_operator, r)
             self.assertEqual(read(os.path.join(out, "robots", f"R0{r}", "labels.csv")), read(os.path.join(out, "labels.csv")))
 
+    def test_spy_and_doctor_see_the_mission(self):
+        url = "udpm://239.255.76.67:7814?ttl=0"
+        silent = subprocess.run([CONSOLE, "spy", "--once", "--seconds", "0.3", "--lcm-url", url], capture_output=True, text=True,
+                                timeout=60)
+        self.assertEqual(silent.returncode, 1)
+        self.assertIn("nothing was heard", silent.stdout)
+        self.start("fusion_node", "--lcm-url", url)
+        heard = ask("spy", "--once", "--lcm-url", url)
+        check_schema("spy", heard)
+        self.assertEqual([(n["node"], n["budget"]) for n in heard["nodes"]], [("OPERATOR", 2000)])
+        decoded = ask("spy", "--once", "--lcm-url", url, "--channel", ".*_HEARTBEAT")
+        check_schema("spy", decoded)
+        self.assertEqual(decoded["channels"][0]["last"]["phase"], "node")
+        found = ask("doctor", "--lcm-url", url, "--out", self.top)
+        check_schema("doctor", found)
+        states = {c["check"]: c["state"] for c in found["checks"]}
+        self.assertEqual((states["multicast route"], states["loopback"], states["group"]), ("good", "good", "warning"))
+        alone = subprocess.run(["unshare", "-rn", CONSOLE, "doctor"], capture_output=True, text=True, timeout=60)
+        self.assertEqual(alone.returncode, 1)
+        self.assertIn("type: sudo ip route add 224.0.0.0/4 dev lo", alone.stdout)
+
     def test_a_robot_leaves_when_it_was_heard(self):
         url = ["--lcm-url", "udpm://239.255.76.67:7812?ttl=0", "--rate", "max"]
         self.start("fusion_node", *url, "--state", os.path.join(self.top, "state"))

@@ -16,13 +16,13 @@
 
 #include "examples.h"
 #include "fusion_node/mission_state.h"
-#include "message_json.h"
 #include "shoal/comms/packet.h"
 #include "shoal/mapping/map_files.h"
 #include "shoal/wire/checksum.h"
 #include "shoal/wire/labels_codec.h"
 #include "shoal/wire/map_codec.h"
 #include "shoal/wire/matches_codec.h"
+#include "shoal/wire/message_json.h"
 #include "shoal/wire/message_kind.h"
 #include "shoal/wire/piece_codec.h"
 

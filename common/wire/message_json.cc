@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "message_json.h"
+#include "shoal/wire/message_json.h"
 
 #include <array>
 #include <variant>
