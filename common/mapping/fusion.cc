@@ -9,6 +9,7 @@
 #include "shoal/mapping/judgement.h"
 #include "shoal/mapping/label_identity.h"
 #include "shoal/mapping/stacked_topics.h"
+#include "shoal/mapping/topic_matching.h"
 
 namespace shoal::mapping {
 namespace {
@@ -102,7 +103,7 @@ GlobalMap fuse(const BeliefStore& beliefs, const matching::MatcherOptions& optio
   const Judgement judgement = judge(beliefs);
   const StackedTopics stacked =
       stack(beliefs, judgement.excluded);  // canonical order, whatever arrived first
-  const matching::Clustering clustering = matching::match(stacked.descriptors, options);
+  const matching::Clustering clustering = matchTopics(stacked, options, judgement);
   const std::vector<world::GlobalLabel> labels = stableLabels(stacked, clustering);
 
   GlobalMap map;

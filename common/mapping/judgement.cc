@@ -21,7 +21,7 @@ class Groups {
       const Topic first = rootOf(c), second = rootOf(d);
       if ((first == a && second == b) || (first == b && second == a)) return false;
     }
-    parent_[std::max(a, b)] = std::min(a, b);
+    if (a != b) parent_[std::max(a, b)] = std::min(a, b);
     return true;
   }
 

@@ -9,8 +9,8 @@
 namespace shoal::mapping {
 
 /// The global label of every stacked topic: the number of the oldest topic in its cluster (creation time,
-/// then robot, then id), so that a label lives as long as its oldest topic. A topic outside the matching is a
-/// cluster of its own.
+/// then robot, then id), so that a label lives as long as its oldest topic.
+/// @param clustering  of stacked.topics, from matchTopics().
 std::vector<world::GlobalLabel> stableLabels(const StackedTopics& stacked,
                                              const matching::Clustering& clustering);
 

@@ -2,18 +2,12 @@
 #pragma once
 
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "shoal/matching/discounted_similarity.h"
+#include "shoal/matching/pair_constraints.h"
 
 namespace shoal::matching {
-
-/// What a clustering must respect, as pairs of vertices.
-struct PairConstraints {
-  std::vector<std::pair<int, int>> together;  ///< joined before anything else, transitively
-  std::vector<std::pair<int, int>> apart;     ///< never in one cluster
-};
 
 /// Average linkage: every vertex begins alone, and the two clusters of greatest mean similarity between their
 /// members are joined again and again while that mean is at least `sigma`.

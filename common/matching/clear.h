@@ -5,6 +5,7 @@
 
 #include "shoal/matching/association_graph.h"
 #include "shoal/matching/clustering.h"
+#include "shoal/matching/pair_constraints.h"
 
 namespace shoal::matching {
 
@@ -48,8 +49,11 @@ Eigen::SparseMatrix<double> normalizedLaplacian(const AssociationGraph& graph, b
 ///
 /// @param graph  Topics per robot (0 is legal), edges i < j with finite
 ///               weights >= 0, no edge twice.
+/// @param constraints  vertices that must be together become one, with the
+///               heaviest of the edges between; those that must be apart are
+///               treated as if of one robot (constrained_clear.h).
 /// @returns A clustering of the graph's vertices. Empty for a graph without any.
-/// @throws std::invalid_argument naming the offending edge or option.
+/// @throws std::invalid_argument naming the offending edge, option or pair.
 ///
 /// Cost: O(nnz + n·m) per step of the eigensolver for components above 300 vertices,
 /// O(s³) for a smaller one of s vertices; memory O(nnz + n·m). Never n×n.
@@ -59,6 +63,7 @@ Eigen::SparseMatrix<double> normalizedLaplacian(const AssociationGraph& graph, b
 /// as in S. Jamieson et al. 2021, §IV-D. We differ from the authors' Matlab in
 /// two places: the tolerance at the threshold, and optimal instead of greedy
 /// assignment; see clear.cc.
-Clustering rectify(const AssociationGraph& graph, const ClearOptions& options = {});
+Clustering rectify(const AssociationGraph& graph, const ClearOptions& options = {},
+                   const PairConstraints& constraints = {});
 
 }  // namespace shoal::matching

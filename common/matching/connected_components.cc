@@ -5,10 +5,19 @@
 #include <numeric>
 #include <vector>
 
+#include "shoal/matching/contracted_graph.h"
+
 namespace shoal::matching {
 
-Clustering matchByComponents(const AssociationGraph& graph) {
+Clustering matchByComponents(const AssociationGraph& graph, const PairConstraints& constraints) {
   check(graph);
+  if (!constraints.empty()) {
+    const Contraction contraction = contract(graph.numVertices(), constraints);
+    const Clustering joined = matchByComponents(contractedGraph(graph, contraction, {contraction, {}}));
+    std::vector<int> label;
+    for (const int group : contraction.group) label.push_back(joined.label[static_cast<size_t>(group)]);
+    return repair(contraction, {label, joined.num_labels, joined.universe}, {});
+  }
   std::vector<int> parent(static_cast<size_t>(graph.numVertices()));  // of a forest whose roots are lowest
   std::iota(parent.begin(), parent.end(), 0);
   const auto root = [&](int v) {

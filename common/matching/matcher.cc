@@ -19,28 +19,48 @@ namespace {
 
 constexpr const char* kDiscounted = "discounted";
 
-Clustering matchGraph(const AssociationGraph& graph, const MatcherOptions& options) {
-  if (options.matcher == "components") return matchByComponents(graph);
+Clustering matchGraph(const AssociationGraph& graph, const MatcherOptions& options,
+                      const PairConstraints& constraints) {
+  if (options.matcher == "components") return matchByComponents(graph, constraints);
   ClearOptions clear;
   clear.distinct = options.keepsOwnApart();
-  return rectify(graph, clear);
+  return rectify(graph, clear, constraints);
 }
 
-// Matches the topics that have words; each other topic gets a label of its own.
+std::vector<int> ownersOf(const DescriptorSet& topics) {
+  std::vector<int> owner;
+  for (size_t r = 0; r < topics.robots.size(); ++r)
+    owner.insert(owner.end(), topics.robots[r].size(), static_cast<int>(r));
+  return owner;
+}
+
+// Matches the topics that have words; each other topic gets a label of its own, or that of those it is to be
+// together with.
 template <class Match>
-Clustering withoutEmptyTopics(const DescriptorSet& topics, Match match) {
+Clustering withoutEmptyTopics(const DescriptorSet& topics, const PairConstraints& constraints, bool distinct,
+                              Match match) {
   DescriptorSet worded = topics;
-  std::vector<bool> empty;
+  std::vector<int> place;
+  int kept = 0;
   for (std::vector<Descriptor>& robot : worded.robots) {
-    for (const Descriptor& topic : robot) empty.push_back(topic.entries.empty());
+    for (const Descriptor& topic : robot) place.push_back(topic.entries.empty() ? -1 : kept++);
     std::erase_if(robot, [](const Descriptor& topic) { return topic.entries.empty(); });
   }
-  const Clustering matched = match(std::as_const(worded));
-  std::vector<int> label;
-  int universe = matched.universe;
-  auto next = matched.label.begin();
-  for (const bool alone : empty) label.push_back(alone ? universe++ : *next++);
-  return numberByFirstAppearance(label, universe);
+  const Contraction contraction = contract(static_cast<int>(place.size()), constraints);
+  PairConstraints kept_constraints;
+  if (!constraints.empty()) {
+    const Conflicts conflicts(contraction, distinct ? ownersOf(topics) : std::vector<int>{});
+    kept_constraints = restrict(contraction, conflicts, place);
+  }
+  return extend(contraction, place, match(std::as_const(worded), kept_constraints));
+}
+
+// What a matcher that knows nothing of constraints says, made to honour them.
+Clustering repaired(const DescriptorSet& topics, const Clustering& clustering,
+                    const PairConstraints& constraints) {
+  if (constraints.empty()) return clustering;
+  const std::vector<int> owner = ownersOf(topics);
+  return repair(contract(static_cast<int>(owner.size()), constraints), clustering, owner);
 }
 
 }  // namespace
@@ -111,32 +131,38 @@ std::optional<double> parseSigma(const std::string& text) {
   return sigma;
 }
 
-Clustering match(const DescriptorSet& topics, const MatcherOptions& options) {
+Clustering match(const DescriptorSet& topics, const MatcherOptions& options,
+                 const PairConstraints& constraints) {
   check(options);
   check(topics);
-  if (options.matcher == "id") return matchById(topics);
-  return withoutEmptyTopics(topics, [&](const DescriptorSet& worded) {
-    const bool distinct = options.keepsOwnApart();
-    const double sigma = options.leastSimilarity();
-    if (options.matcher == "shoal") return matchShoal(worded, sigma, distinct);
-    if (options.similarity == kDiscounted) {
-      return matchGraph(associationGraph(worded, discountedSimilarity(worded), sigma, !distinct), options);
-    }
-    const Similarity similarity = similarityNamed(options.similarity);
-    if (options.matcher == "hungarian") return matchSequentially(worded, similarity);
-    if (options.matcher == "incremental") return matchIncrementally(worded, similarity, sigma);
-    return matchGraph(associationGraph(worded, similarity, sigma, !distinct), options);
-  });
+  if (options.matcher == "id") return repaired(topics, matchById(topics), constraints);
+  const bool distinct = options.keepsOwnApart();
+  return withoutEmptyTopics(
+      topics, constraints, distinct, [&](const DescriptorSet& worded, const PairConstraints& kept) {
+        const double sigma = options.leastSimilarity();
+        if (options.matcher == "shoal") return matchShoal(worded, sigma, distinct, kept);
+        if (options.similarity == kDiscounted) {
+          return matchGraph(associationGraph(worded, discountedSimilarity(worded), sigma, !distinct), options,
+                            kept);
+        }
+        const Similarity similarity = similarityNamed(options.similarity);
+        if (options.matcher == "hungarian")
+          return repaired(worded, matchSequentially(worded, similarity), kept);
+        if (options.matcher == "incremental")
+          return repaired(worded, matchIncrementally(worded, similarity, sigma), kept);
+        return matchGraph(associationGraph(worded, similarity, sigma, !distinct), options, kept);
+      });
 }
 
-Clustering match(const AssociationGraph& graph, const MatcherOptions& options) {
+Clustering match(const AssociationGraph& graph, const MatcherOptions& options,
+                 const PairConstraints& constraints) {
   check(options);
   if (options.matcher != "clear" && options.matcher != "components") {
     throw std::invalid_argument(
         "matcher \"" + options.matcher +
         "\" looks at the topics themselves and cannot match a graph; \"clear\" and \"components\" can");
   }
-  return matchGraph(graph, options);
+  return matchGraph(graph, options, constraints);
 }
 
 }  // namespace shoal::matching

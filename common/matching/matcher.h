@@ -9,6 +9,7 @@
 #include "shoal/matching/association_graph.h"
 #include "shoal/matching/clustering.h"
 #include "shoal/matching/descriptors.h"
+#include "shoal/matching/pair_constraints.h"
 #include "shoal/matching/similarity.h"
 
 namespace shoal::matching {
@@ -55,11 +56,20 @@ std::optional<double> parseSigma(const std::string& text);
 ///
 /// Pure: equal input, equal output. The caller orders robots and topics canonically. Topics without words are
 /// joined with nothing by all but "id" and change nothing for the others.
-/// @throws std::invalid_argument naming the option or the descriptor that is wrong, and what would be right.
-Clustering match(const DescriptorSet& topics, const MatcherOptions& options);
+/// Constraints, the operator's links and exclusions, are honoured exactly by every matcher, also for topics
+/// without words; what is linked shares a label even if it is one robot's own and these are to stay apart.
+/// "clear" and "shoal" match under them (constrained_clear.h, average_linkage.h), "components" takes links
+/// for edges; "id", "hungarian" and "incremental" know nothing of them, and what they say is repaired
+/// (pair_constraints.h).
+///
+/// @throws std::invalid_argument naming the option, the descriptor or the constraint that is wrong, and what
+/// would be right.
+Clustering match(const DescriptorSet& topics, const MatcherOptions& options,
+                 const PairConstraints& constraints = {});
 
 /// The same on an association graph whose edges are given. Only matchers that look at nothing else
 /// ("clear", "components") can do this; others are refused by name.
-Clustering match(const AssociationGraph& graph, const MatcherOptions& options);
+Clustering match(const AssociationGraph& graph, const MatcherOptions& options,
+                 const PairConstraints& constraints = {});
 
 }  // namespace shoal::matching

@@ -30,12 +30,22 @@ std::vector<int> ranksByContent(const DescriptorSet& topics) {
   return rank;
 }
 
-void keepOwnApart(const DescriptorSet& topics, std::vector<std::pair<int, int>>& apart) {
+// Of a robot's topics those that nobody wants together.
+void keepOwnApart(const DescriptorSet& topics, PairConstraints& constraints) {
+  const auto size = [](int n, const std::vector<Descriptor>& robot) {
+    return n + static_cast<int>(robot.size());
+  };
+  const int n = std::accumulate(topics.robots.begin(), topics.robots.end(), 0, size);
+  const std::vector<int> group = contract(n, constraints).group;
   int first = 0;
   for (const std::vector<Descriptor>& robot : topics.robots) {
     const int end = first + static_cast<int>(robot.size());
-    for (int i = first; i < end; ++i)
-      for (int j = first; j < i; ++j) apart.emplace_back(j, i);
+    for (int i = first; i < end; ++i) {
+      for (int j = first; j < i; ++j) {
+        if (group[static_cast<size_t>(i)] != group[static_cast<size_t>(j)])
+          constraints.apart.emplace_back(j, i);
+      }
+    }
     first = end;
   }
 }
@@ -45,7 +55,7 @@ void keepOwnApart(const DescriptorSet& topics, std::vector<std::pair<int, int>>&
 Clustering matchShoal(const DescriptorSet& topics, double sigma, bool distinct,
                       const PairConstraints& constraints) {
   PairConstraints all = constraints;
-  if (distinct) keepOwnApart(topics, all.apart);
+  if (distinct) keepOwnApart(topics, all);
   const std::vector<int> label =
       averageLinkage(discountedSimilarity(topics), std::llround(sigma * 1e9), ranksByContent(topics), all);
   Clustering clustering = numberByFirstAppearance(label, static_cast<int>(label.size()));

@@ -18,7 +18,7 @@ inline constexpr double kShoalSigma = 0.25;
 ///
 /// @param topics       valid, and none without words.
 /// @param sigma        in [1e-9, 1].
-/// @param distinct     labels of one robot stay apart.
+/// @param distinct     labels of one robot stay apart, but for those that `constraints` want together.
 /// @param constraints  the operator's; vertices as in Clustering.
 /// @throws std::invalid_argument naming a pair that must be both together and apart.
 Clustering matchShoal(const DescriptorSet& topics, double sigma, bool distinct,

@@ -147,6 +147,28 @@ std::string bytesOf(const GlobalMap& map) {
   return globalMapCsv(map, grid) + labelsCsv(map, grid);
 }
 
+TEST(EditsTest, LinksAndExclusionsDecideWhatIsFused) {
+  const auto labelOf = [](const BeliefStore& store, int topic) {
+    for (const Correspondence& c : fuse(store, matcher()).correspondences)
+      if (number(world::globalLabel(c.robot, c.topic)) == topic) return number(c.label);
+    return -1;
+  };
+  BeliefStore store = storeOf({0, 1, 2});
+  const GlobalMap before = fuse(store, matcher());
+  const auto& c = before.correspondences;
+  const auto of = [](const Correspondence& m) { return number(world::globalLabel(m.robot, m.topic)); };
+  int counter = 0;
+  for (size_t i = 0; i < c.size(); ++i) {
+    for (size_t j = 0; j < i; ++j) {
+      const bool apart = c[i].label == c[j].label;
+      ++counter;
+      store.apply(pieceOf(link("A", counter, counter, of(c[j]), of(c[i]), apart)));
+      EXPECT_EQ(labelOf(store, of(c[i])) == labelOf(store, of(c[j])), !apart);
+    }
+  }
+  EXPECT_GT(counter, 2);
+}
+
 TEST(EditsTest, WithoutARobotIsTheVeryMapOfAMissionWithoutIt) {
   for (const int gone : {0, 1, 2}) {
     std::vector<int> others = {0, 1, 2};
