@@ -13,7 +13,7 @@ namespace shoal::topics {
 namespace {
 
 const std::string kKind = "shoalCLM";
-constexpr uint32_t kVersion = 1;
+constexpr uint32_t kVersion = 2;
 
 }  // namespace
 
@@ -40,6 +40,7 @@ std::vector<uint8_t> CellLabelModel::checkpoint() const {
     out.i32(k);
     out.i32(number(slots_.id(k)));
     out.i64(slots_.created(k).us);
+    out.i32(twin_of_[static_cast<size_t>(k)]);
   }
   out.u64(cells_.size());
   for (const LabelledCell& cell : cells_) {
@@ -70,7 +71,7 @@ CellLabelModel CellLabelModel::resumed(const CellLabelHyperparameters& hyperpara
   model.num_visits_ = in.u64();
   const int32_t num_ids = in.i32();
   in.demand(num_ids >= 0 && num_ids <= world::kMaxTopicId + 1, "it has more topics than there are ids");
-  const size_t num_open = in.count(16);
+  const size_t num_open = in.count(20);
   std::vector<TopicSlots::Named> open;
   for (size_t i = 0; i < num_open; ++i) {
     const TopicSlots::Named topic{in.i32(), world::TopicId{in.i32()}, world::Timestamp{in.i64()}};
@@ -78,6 +79,12 @@ CellLabelModel CellLabelModel::resumed(const CellLabelHyperparameters& hyperpara
                   number(topic.id) >= 0 && number(topic.id) < num_ids,
               "its topics are out of order or range");
     open.push_back(topic);
+    const int32_t twin = in.i32();
+    in.demand(twin == topic.slot ||
+                  (twin >= 0 && twin < topic.slot && model.twin_of_[static_cast<size_t>(twin)] == twin &&
+                   std::ranges::find(open, twin, &TopicSlots::Named::slot) != open.end()),
+              "a topic is a twin of none");
+    model.twin_of_[static_cast<size_t>(topic.slot)] = twin;
   }
   model.slots_.restore(num_ids, open);
   std::vector<int64_t> total(static_cast<size_t>(model.counts_.vocabularySize()));  // of each word

@@ -13,6 +13,7 @@ void check(const CellLabelHyperparameters& h) {
   checkRange("coupling", h.coupling, 0.0, 100.0);
   checkRange("tau", h.tau, 1e-3, 1e3);
   checkRange("local_rate", h.local_rate, 0.0, 1.0);
+  checkRange("twin_similarity", h.twin_similarity, 1e-3, 1.0);
   checkRange("visits_per_cell", h.visits_per_cell, 0.0, 1e6);
 }
 

@@ -11,6 +11,7 @@
 #include "shoal/demand.h"
 #include "shoal/topics/cell_words.h"
 #include "shoal/topics/schedule.h"
+#include "shoal/topics/twin_labels.h"
 
 namespace shoal::topics {
 namespace {
@@ -59,6 +60,8 @@ CellLabelModel::CellLabelModel(const CellLabelHyperparameters& hyperparameters,
   cells_of_.resize(stride);
   scores_.resize(stride);
   alike_.resize(stride);
+  twin_of_.resize(stride);
+  std::iota(twin_of_.begin(), twin_of_.end(), 0);
   weights_.resize(stride);
 }
 
@@ -98,6 +101,14 @@ void CellLabelModel::refine(int64_t visits) {
     redraw(nextVisit({hyperparameters_.tau, hyperparameters_.local_rate}, latest_, numCells(), random), true);
   }
   slots_.nameTopics(time_);
+  findTwins();
+}
+
+int32_t CellLabelModel::numTopics() const {
+  int32_t sets = 0;
+  for (int32_t k = 0; k < slots_.end(); ++k)
+    sets += slots_.isOpen(k) && twin_of_[static_cast<size_t>(k)] == k;
+  return sets;
 }
 
 int32_t CellLabelModel::topicLimit() const {
@@ -130,9 +141,12 @@ void CellLabelModel::redraw(int32_t c, bool words_are_counted) {
   weighLabels(scores_, cell.num_words, alike_, scale_, weights_);
   Random random(hashCombine(seed_, kCellStream), robot_, static_cast<uint64_t>(c), cell.num_draws++);
   const int32_t drawn = drawLabel(weights_, random);
-  const uint64_t sum = std::accumulate(weights_.begin(), weights_.end(), uint64_t{0});
-  cell.certainty = static_cast<float>(static_cast<double>(weights_[static_cast<size_t>(drawn)]) /
-                                      static_cast<double>(sum));
+  uint64_t sum = 0, twins = 0;
+  for (size_t k = 0; k < weights_.size(); ++k) {
+    sum += weights_[k];
+    if (twin_of_[k] == twin_of_[static_cast<size_t>(drawn)]) twins += weights_[k];
+  }
+  cell.certainty = static_cast<float>(static_cast<double>(twins) / static_cast<double>(sum));
 
   if (words_are_counted && drawn == old) return;
   if (words_are_counted) counts_.remove(cell.words, old);
@@ -144,16 +158,50 @@ void CellLabelModel::redraw(int32_t c, bool words_are_counted) {
 void CellLabelModel::relabel(LabelledCell& cell, int32_t slot) {
   if (cell.slot == slot) return;
   if (cells_of_[static_cast<size_t>(slot)]++ == 0) slots_.open(slot);
-  if (cell.slot >= 0 && --cells_of_[static_cast<size_t>(cell.slot)] == 0) slots_.close(cell.slot);
+  if (cell.slot >= 0 && --cells_of_[static_cast<size_t>(cell.slot)] == 0) {
+    slots_.close(cell.slot);
+    leaveTwins(cell.slot);
+  }
   cell.slot = slot;
+}
+
+void CellLabelModel::findTwins() {
+  std::vector<int32_t> open;
+  for (int32_t k = 0; k < slots_.end(); ++k) {
+    if (slots_.isOpen(k)) open.push_back(k);
+  }
+  const std::vector<int32_t> twins = twinLabels(counts_, open, hyperparameters_.twin_similarity);
+  for (size_t i = 0; i < open.size(); ++i) twin_of_[static_cast<size_t>(open[i])] = twins[i];
+}
+
+// A set goes by its lowest label: when that one leaves, by the next.
+void CellLabelModel::leaveTwins(int32_t slot) {
+  twin_of_[static_cast<size_t>(slot)] = -1;
+  const auto next = static_cast<int32_t>(std::ranges::find(twin_of_, slot) - twin_of_.begin());
+  std::ranges::replace(twin_of_, slot, next);
+  twin_of_[static_cast<size_t>(slot)] = slot;
+}
+
+// What each label is told as: the oldest of its twins, by slot.
+std::vector<int32_t> CellLabelModel::toldAs() const {
+  std::vector<int32_t> oldest(twin_of_.size(), -1);  // by lowest slot of the set
+  for (int32_t k = 0; k < slots_.end(); ++k) {
+    if (!slots_.isOpen(k)) continue;
+    int32_t& known = oldest[static_cast<size_t>(twin_of_[static_cast<size_t>(k)])];
+    if (known < 0 || slots_.id(k) < slots_.id(known)) known = k;
+  }
+  std::vector<int32_t> told;
+  for (const int32_t twin : twin_of_) told.push_back(oldest[static_cast<size_t>(twin)]);
+  return told;
 }
 
 Snapshot CellLabelModel::snapshot() const {
   Snapshot snapshot{counts_.vocabularySize(), topics(), {}};
   snapshot.cells.reserve(cells_.size());
+  const std::vector<int32_t> told = toldAs();
   for (const LabelledCell& cell : cells_) {
-    snapshot.cells.push_back(
-        {cell.index, slots_.id(cell.slot), cell.certainty, cell.seen_observation, cell.seen});
+    snapshot.cells.push_back({cell.index, slots_.id(told[static_cast<size_t>(cell.slot)]), cell.certainty,
+                              cell.seen_observation, cell.seen});
   }
   std::ranges::sort(snapshot.cells, {}, &CellLabel::cell);
   return snapshot;
@@ -182,13 +230,17 @@ std::vector<double> CellLabelModel::surprise(const world::WordsInCells& words,
 }
 
 std::vector<TopicCounts> CellLabelModel::topics() const {
+  const std::vector<int32_t> told = toldAs();
   std::vector<TopicCounts> topics(static_cast<size_t>(slots_.end()));
+  const size_t end = topics.size();
   for (int32_t w = 0; w < counts_.vocabularySize(); ++w) {
     const std::span<const int32_t> counts = counts_.wordCounts(w);
-    for (size_t k = 0; k < topics.size(); ++k) {
+    for (size_t k = 0; k < end; ++k) {
       if (counts[k] == 0) continue;
-      topics[k].words.push_back({w, counts[k]});
-      topics[k].weight += counts[k];
+      TopicCounts& topic = topics[static_cast<size_t>(told[k])];
+      if (topic.words.empty() || topic.words.back().word != w) topic.words.push_back({w, 0});
+      topic.words.back().count += counts[k];
+      topic.weight += counts[k];
     }
   }
   for (int32_t k = 0; k < slots_.end(); ++k) {

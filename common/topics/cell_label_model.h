@@ -30,6 +30,11 @@ namespace shoal::topics {
 /// most K labels are in use, and not more than one for every `cells_per_topic` cells seen (2 at least), so
 /// that a robot that has seen little does not split hairs.
 ///
+/// Labels find rare things when there are many, and cut common ones in pieces. So topics as told are sets of
+/// labels that are alike (twin_labels.h), compared anew after each image; a topic's words are those of all
+/// its labels, and it has the id of the oldest. Its labels part again when they grow unlike: an id that was
+/// told as another then comes back, as the topic it always was.
+///
 /// observe() takes one image: its words join their cells, each of which is drawn anew, then a fixed count of
 /// cells is visited (schedule.h). The cost of an observation does not depend on how much was seen before; a
 /// visit costs (different words of the cell) x K additions.
@@ -64,7 +69,8 @@ class CellLabelModel final : public Learner {
 
   /// Topics as exact counts, every cell with its label.
   ///
-  /// The certainty of a label is its p(z = k) in the conditional that it was last drawn from.
+  /// The certainty of a cell is the sum of p(z = k) over its topic's labels, in the conditional that it was
+  /// last drawn from.
   ///
   /// Cost: O(V K + cells log cells).
   Snapshot snapshot() const override;
@@ -87,7 +93,8 @@ class CellLabelModel final : public Learner {
                                 world::RobotId robot, std::span<const uint8_t> checkpoint);
 
   int32_t numCells() const override { return neighborhood_.size(); }
-  int32_t numTopics() const override { return slots_.numOpen(); }
+  /// Topics as they are told, twins as one.
+  int32_t numTopics() const override;
   /// How many labels may be in use now.
   int32_t topicLimit() const;
   int64_t numVisits() const { return static_cast<int64_t>(num_visits_); }
@@ -108,6 +115,9 @@ class CellLabelModel final : public Learner {
   int32_t cellFor(const world::CellIndex& index);
   void redraw(int32_t c, bool words_are_counted);
   void relabel(LabelledCell& cell, int32_t slot);
+  void findTwins();
+  void leaveTwins(int32_t slot);
+  std::vector<int32_t> toldAs() const;
   std::vector<TopicCounts> topics() const;
 
   const CellLabelHyperparameters hyperparameters_;
@@ -119,6 +129,7 @@ class CellLabelModel final : public Learner {
   Neighborhood neighborhood_;
   std::vector<LabelledCell> cells_;  // by number, as in neighborhood_
   std::vector<int32_t> cells_of_;    // by slot
+  std::vector<int32_t> twin_of_;  // by slot: the lowest of its twins when last compared; itself when closed
 
   std::vector<int32_t> latest_;  // cells of the latest observation
   int32_t observation_ = -1;     // its number

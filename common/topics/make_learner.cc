@@ -25,7 +25,7 @@ uint64_t hashOf(const Hyperparameters& h) {
 
 uint64_t hashOf(const CellLabelHyperparameters& h) {
   return hashOf({static_cast<double>(h.max_topics), static_cast<double>(h.cells_per_topic), h.evidence,
-                 h.beta, h.coupling, h.tau, h.local_rate, h.visits_per_cell});
+                 h.beta, h.coupling, h.tau, h.local_rate, h.twin_similarity, h.visits_per_cell});
 }
 
 int32_t sizeOf(const std::vector<world::WordGroup>& groups) {

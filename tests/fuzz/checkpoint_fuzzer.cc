@@ -35,6 +35,7 @@ world::WordsInCells image() {
 
 struct OfCells {
   static constexpr const char* kKind = "shoalCLM";
+  static constexpr uint32_t kVersion = 2;
   static CellLabelModel made() { return {{}, kGroups, 7, world::RobotId{3}}; }
   static CellLabelModel resumed(std::span<const uint8_t> bytes) {
     return CellLabelModel::resumed({}, kGroups, 7, world::RobotId{3}, bytes);
@@ -43,6 +44,7 @@ struct OfCells {
 
 struct OfWords {
   static constexpr const char* kKind = "shoalTPM";
+  static constexpr uint32_t kVersion = 1;
   static TopicModel made() { return {{}, 10, 7, world::RobotId{3}}; }
   static TopicModel resumed(std::span<const uint8_t> bytes) {
     return TopicModel::resumed({}, 10, 7, world::RobotId{3}, bytes);
@@ -72,7 +74,7 @@ void tryAll(const uint8_t* data, size_t size) {
     bytes.resize(from);
     bytes.insert(bytes.end(), data + 1, data + size);
   }
-  topics::StateWriter whole(Model::kKind, 1);
+  topics::StateWriter whole(Model::kKind, Model::kVersion);
   for (size_t at = 12; at + 4 <= bytes.size(); at += 4) {
     whole.u32(bytes[at] | uint32_t{bytes[at + 1]} << 8 | uint32_t{bytes[at + 2]} << 16 |
               uint32_t{bytes[at + 3]} << 24);

@@ -182,9 +182,13 @@ TEST(CellLabelModelTest, ItsLongRunIsThatOfTheChainWorkedByBruteForce) {
 
   const int num_models = 20, num_samples = 1500;  // a model each, for ids run out at 10 000
   for (uint64_t seed = 0; seed < num_models; ++seed) {
-    CellLabelModel model(
-        {.max_topics = 2, .evidence = evidence, .beta = beta, .coupling = coupling, .tau = 1.0}, kThreeWords,
-        seed, RobotId{0});
+    CellLabelModel model({.max_topics = 2,
+                          .evidence = evidence,
+                          .beta = beta,
+                          .coupling = coupling,
+                          .tau = 1.0,
+                          .twin_similarity = 1},
+                         kThreeWords, seed, RobotId{0});
     model.add(image(0, {{{0, 0, 0}, {{0, 3}, {1, 1}}},
                         {{1, 0, 0}, {{0, 1}, {1, 1}, {2, 1}}},
                         {{2, 0, 0}, {{1, 1}, {2, 2}}}}));
@@ -272,8 +276,8 @@ TEST(CellLabelModelTest, NeighborsDecideWhatWordsLeaveOpen) {
 
 // At most one topic for every 10 cells seen, but two; never more than 6.
 TEST(CellLabelModelTest, TheNumberOfTopicsIsTiedToWhatWasSeen) {
-  CellLabelModel model({.max_topics = 6, .cells_per_topic = 10, .evidence = 1}, PlantedMap::groups(), 1,
-                       RobotId{0});
+  CellLabelModel model({.max_topics = 6, .cells_per_topic = 10, .evidence = 1, .twin_similarity = 1},
+                       PlantedMap::groups(), 1, RobotId{0});
   PlantedMap map(5, 3);
   EXPECT_EQ(model.topicLimit(), 2);
   int32_t most = 0;
@@ -293,11 +297,49 @@ TEST(CellLabelModelTest, TheNumberOfTopicsIsTiedToWhatWasSeen) {
   EXPECT_EQ(most, 6);  // nearly even odds fill all there are
 }
 
+// Many labels over three classes cut classes in pieces. With twins joined fewer topics are told; the labels
+// themselves are the same.
+TEST(CellLabelModelTest, TellsTwinsAsOneTopic) {
+  for (uint64_t seed = 1; seed <= 3; ++seed) {
+    CellLabelHyperparameters apart{.max_topics = 16, .evidence = 3, .twin_similarity = 1}, joined = apart;
+    joined.twin_similarity = 0.3;
+    CellLabelModel pieces(apart, PlantedMap::groups(), seed, RobotId{0});
+    CellLabelModel whole(joined, PlantedMap::groups(), seed, RobotId{0});
+    PlantedMap map(100 + seed, 3), same(100 + seed, 3);
+    for (int32_t i = 0; i < 20; ++i) {
+      pieces.observe(map.image(i));
+      whole.observe(same.image(i));
+    }
+    const Snapshot fine = pieces.snapshot(), coarse = whole.snapshot();
+    EXPECT_GE(coarse.topics.size(), 3u);
+    EXPECT_LE(coarse.topics.size(), fine.topics.size() / 2);
+    ASSERT_EQ(fine.cells.size(), coarse.cells.size());
+    std::map<int32_t, int32_t> told;  // a piece's topic
+    for (size_t c = 0; c < fine.cells.size(); ++c) {
+      const int32_t as = number(coarse.cells[c].topic);
+      EXPECT_EQ(told.emplace(number(fine.cells[c].topic), as).first->second, as);
+      EXPECT_GE(coarse.cells[c].certainty, fine.cells[c].certainty - 1e-6F);
+    }
+    std::map<int32_t, int64_t> weight;
+    std::map<int32_t, int32_t> oldest;
+    for (const TopicCounts& piece : fine.topics) {
+      const int32_t as = told.at(number(piece.id));
+      weight[as] += piece.weight;
+      oldest.emplace(as, number(piece.id));  // ids ascend
+    }
+    for (const TopicCounts& topic : coarse.topics) {
+      EXPECT_EQ(topic.weight, weight.at(number(topic.id)));
+      EXPECT_EQ(number(topic.id), oldest.at(number(topic.id)));
+    }
+  }
+}
+
 // With hardly any likelihood labels die and open all the time. An id names one topic for ever: once it is
 // gone it never returns, it keeps its creation time, and a younger topic has a larger id.
 TEST(CellLabelModelTest, IdsAreNeverUsedAgain) {
-  CellLabelModel model({.max_topics = 30, .cells_per_topic = 1, .evidence = 0.1, .coupling = 0},
-                       PlantedMap::groups(), 1, RobotId{0});
+  CellLabelModel model(
+      {.max_topics = 30, .cells_per_topic = 1, .evidence = 0.1, .coupling = 0, .twin_similarity = 1},
+      PlantedMap::groups(), 1, RobotId{0});
   PlantedMap map(5, 3);
   std::map<int32_t, int64_t> created;
   std::set<int32_t> gone, alive;
@@ -351,15 +393,16 @@ TEST(CellLabelModelTest, SeedRobotAndEveryHyperparameterMatter) {
   const std::string base = mission({}, 7, RobotId{3});
   EXPECT_NE(mission({}, 8, RobotId{3}), base);
   EXPECT_NE(mission({}, 7, RobotId{4}), base);
-  std::vector<CellLabelHyperparameters> others(8);
+  std::vector<CellLabelHyperparameters> others(9);
   others[0].max_topics = 7;
   others[1].cells_per_topic = 60;
   others[2].evidence = 20;
   others[3].beta = 0.5;
   others[4].coupling = 0.2;
   others[5].tau = 0.9;
-  others[6].local_rate = 0.2;
+  others[6].local_rate = 0.6;
   others[7].visits_per_cell = 3;
+  others[8].twin_similarity = 0.2;
   for (size_t i = 0; i < others.size(); ++i) EXPECT_NE(mission(others[i], 7, RobotId{3}), base) << i;
 }
 
@@ -376,7 +419,7 @@ TEST(CellLabelModelTest, EveryBuildGivesTheSameBytes) {
                                    .visits_per_cell = 3};
   uint64_t digest = 0;
   for (const char c : mission(h, 1, RobotId{12}, 20)) digest = hashCombine(digest, static_cast<uint8_t>(c));
-  EXPECT_EQ(digest, 10154318484779370624u);
+  EXPECT_EQ(digest, 10365725611417515016u);
 }
 
 // Other models, snapshots and copies in between leave a model's numbers alone.

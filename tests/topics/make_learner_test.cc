@@ -42,19 +42,20 @@ TEST(MakeLearnerTest, EveryHyperparameterIsInTheFingerprint) {
   words[6].tau = 0.9;
   words[7].local_rate = 0.2;
   words[8].resamples_per_observation = 3000;
-  std::vector<CellLabelHyperparameters> cells(9);
+  std::vector<CellLabelHyperparameters> cells(10);
   cells[1].max_topics = 7;
   cells[2].cells_per_topic = 7;
   cells[3].evidence = 2;
   cells[4].beta = 0.7;
   cells[5].coupling = 0.2;
   cells[6].tau = 0.9;
-  cells[7].local_rate = 0.2;
+  cells[7].local_rate = 0.6;
   cells[8].visits_per_cell = 3;
+  cells[9].twin_similarity = 0.2;
   std::set<uint64_t> prints;
   for (const Hyperparameters& h : words) prints.insert(fingerprint(h));
   for (const CellLabelHyperparameters& h : cells) prints.insert(fingerprint(h));
-  EXPECT_EQ(prints.size(), 18u);
+  EXPECT_EQ(prints.size(), 19u);
   EXPECT_EQ(fingerprint(words[0]), fingerprint(Hyperparameters{}));
 }
 
