@@ -114,11 +114,22 @@ mapping::Applied MissionState::apply(const mapping::Piece& piece) {
   return applied;
 }
 
-const mapping::GlobalMap& MissionState::refreshMap() {
+const mapping::FusedMap& MissionState::refresh() {
   if (mapIsStale()) {
-    map_ = mapping::fuse(beliefs_, matcher_);
-    map_digest_ = map_.digest();
+    fused_.update(beliefs_, matcher_);
+    map_is_old_ = true;
   }
+  return fused_;
+}
+
+const mapping::GlobalMap& MissionState::refreshMap() {
+  refresh();
+  return map();
+}
+
+const mapping::GlobalMap& MissionState::map() const {
+  if (map_is_old_) map_ = fused_.map();
+  map_is_old_ = false;
   return map_;
 }
 
@@ -145,12 +156,12 @@ double MissionState::cellSize() const {
 mapping::MissionView MissionState::view() const {
   mapping::MissionView view{.mission = mission_,
                             .cell_size_m = cellSize(),
-                            .map = map_,
+                            .map = map(),
                             .state_digest = beliefs_.digest(),
-                            .map_digest = map_digest_,
+                            .map_digest = mapDigest(),
                             .nodes = {}};
   for (const auto& [name, h] : heartbeats_) {
-    view.nodes.push_back(statusOf(name, h, holdsWhole(name), {map_.state_digest, map_digest_}));
+    view.nodes.push_back(statusOf(name, h, holdsWhole(name), {fused_.stateDigest(), mapDigest()}));
   }
   std::ranges::stable_sort(view.nodes, {}, [](const mapping::NodeStatus& n) {
     const auto robot = world::parseRobotId(n.name);

@@ -10,7 +10,7 @@
 #include "shoal/comms/packet.h"
 #include "shoal/comms/stats.h"
 #include "shoal/mapping/belief_store.h"
-#include "shoal/mapping/fusion.h"
+#include "shoal/mapping/fused_map.h"
 #include "shoal/mapping/queries.h"
 #include "shoal/wire/heartbeat_codec.h"
 
@@ -51,11 +51,16 @@ class MissionState {
   world::Timestamp latestTime() const { return latest_; }
 
   /// True when the state changed after map() was made.
-  bool mapIsStale() const { return map_.state_digest != beliefs_.digest(); }
-  /// Fuses anew when the state has changed. Cost: as mapping::fuse().
+  bool mapIsStale() const { return fused_.stateDigest() != beliefs_.digest(); }
+  /// Fuses anew when the state has changed. Cost: as mapping::FusedMap::update().
+  const mapping::FusedMap& refresh();
+  /// The same, with the map's cells in a row.
   const mapping::GlobalMap& refreshMap();
-  const mapping::GlobalMap& map() const { return map_; }
-  uint64_t mapDigest() const { return map_digest_; }
+  /// As of the last refresh. Cost: nothing, where labels, matches, digest or the number of cells will do.
+  const mapping::FusedMap& fused() const { return fused_; }
+  /// The same with the cells in a row. Cost: O(cells) for the first who asks after a refresh.
+  const mapping::GlobalMap& map() const;
+  uint64_t mapDigest() const { return fused_.digest(); }
 
   /// For the heartbeat: how much is held of every robot.
   std::vector<wire::Heartbeat::Share> roster() const;
@@ -65,7 +70,7 @@ class MissionState {
   /// Edge of a cell as the lowest robot says, metres; the constructor's before any was heard.
   double cellSize() const;
 
-  /// Everything as one value to ask questions of, with the map as of the last refreshMap().
+  /// Everything as one value to ask questions of, with the map as of the last refresh.
   mapping::MissionView view() const;
 
   const matching::MatcherOptions& matcher() const { return matcher_; }
@@ -79,8 +84,9 @@ class MissionState {
   std::set<int32_t> other_missions_;
   int32_t conflicts_ = 0;
   world::Timestamp latest_;
-  mapping::GlobalMap map_;
-  uint64_t map_digest_ = 0;
+  mapping::FusedMap fused_;
+  mutable mapping::GlobalMap map_;  // of fused_, unless map_is_old_
+  mutable bool map_is_old_ = false;
 };
 
 }  // namespace shoal::fusion_node

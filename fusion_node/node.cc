@@ -70,7 +70,7 @@ void Node::turn(int timeout_ms) {
 
   const int64_t wall = wallMs();
   if (state_.mapIsStale() && wall - fused_at_ms_ >= kFusePeriodMs) {
-    state_.refreshMap();
+    state_.refresh();
     fused_at_ms_ = wallMs();
     const auto offer = [this](std::string_view kind, std::vector<wire::Bytes> chunks) {
       const std::string channel = comms::channelName(options_.name, kind);
@@ -87,9 +87,9 @@ void Node::turn(int timeout_ms) {
     const auto limit = [this](std::string_view kind) {
       return wire::maxPayload(comms::channelName(options_.name, kind).size());
     };
-    offer("MATCHES", wire::encodeMatches(state_.map().correspondences, state_.mapDigest(), options_.mission,
-                                         world::Timestamp{}, limit("MATCHES")));
-    offer("LABELS", wire::encodeLabels(state_.map().labels, state_.mapDigest(), options_.mission,
+    offer("MATCHES", wire::encodeMatches(state_.fused().correspondences(), state_.mapDigest(),
+                                         options_.mission, world::Timestamp{}, limit("MATCHES")));
+    offer("LABELS", wire::encodeLabels(state_.fused().labels(), state_.mapDigest(), options_.mission,
                                        world::Timestamp{}, limit("LABELS")));
   }
   if (state_.mapDigest() != published_digest_ && wall - published_at_ms_ >= kPublishPeriodMs) publishMap();
@@ -116,10 +116,10 @@ comms::Packet Node::heartbeat(int64_t now_us) {
   h.mission = options_.mission;
   h.phase = wire::Phase::kNode;
   h.observation = -1;
-  h.num_cells = static_cast<int32_t>(state_.map().cells.size());
+  h.num_cells = static_cast<int32_t>(std::min<int64_t>(state_.fused().numCells(), INT32_MAX));
   h.state_digest = state_.beliefs().digest();
   h.map_digest = state_.mapDigest();
-  h.map_of_state = state_.map().state_digest;
+  h.map_of_state = state_.fused().stateDigest();
   h.cell_size_m = state_.cellSize();
   h.host = hostHash();
   h.pid = ::getpid();

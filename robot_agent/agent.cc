@@ -171,7 +171,7 @@ void Agent::listen(int timeout_ms) {
     if (!options_.fuse && !packet.channel.ends_with("_HEARTBEAT")) return;
     others_.hear(packet, sender_.stats());
   });
-  if (options_.fuse && phase_ != wire::Phase::kFlying) others_.refreshMap();
+  if (options_.fuse && phase_ != wire::Phase::kFlying) others_.refresh();
   for (; warned_of_missions_ < others_.otherMissions().size(); ++warned_of_missions_) {
     spdlog::warn("another mission is heard on this URL; ours is {}", options_.mission);
   }
@@ -242,7 +242,7 @@ comms::Packet Agent::heartbeat(int64_t now_us) {
   h.state_digest = options_.fuse ? others_.beliefs().digest() : own_.digest();
   if (options_.fuse) {
     h.map_digest = others_.mapDigest();
-    h.map_of_state = others_.map().state_digest;
+    h.map_of_state = others_.fused().stateDigest();
     h.roster = others_.roster();
   }
   h.vocabulary = explorer_.fingerprint();

@@ -38,6 +38,7 @@ Applied BeliefStore::apply(const Piece& piece) {
   if (!inserted) return held->second == piece ? Applied::kDuplicate : Applied::kConflict;
   if (piece.version == slot.version) {
     sum->second.digest += contentHash(piece);
+    noteChange(piece.key, slot);
     return Applied::kNew;
   }
   if (piece.part != 0) {
@@ -45,6 +46,7 @@ Applied BeliefStore::apply(const Piece& piece) {
     return Applied::kPending;
   }
   promote(slot, piece.version);
+  noteChange(piece.key, slot);
   return Applied::kNew;
 }
 
@@ -53,7 +55,9 @@ void BeliefStore::beginEpoch(world::RobotId robot, RobotSum& sum, int32_t epoch)
   const auto first =
       std::ranges::find_if(slots_, [&](const auto& slot) { return slot.first.robot == robot; });
   const auto last = std::find_if(first, slots_.end(), [&](const auto& s) { return s.first.robot != robot; });
+  for (auto slot = first; slot != last; ++slot) changes_.erase(slot->second.changed);
   slots_.erase(first, last);
+  ++revision_;
   sum = {0, 0, epoch};
 }
 
@@ -66,6 +70,12 @@ void BeliefStore::promote(Slot& slot, world::Version version) {
   slot.parts = std::move(newer->second);
   for (const auto& [part, piece] : slot.parts) sum.digest += contentHash(piece);
   slot.pending.erase(slot.pending.begin(), slot.pending.upper_bound(version));
+}
+
+void BeliefStore::noteChange(const PieceKey& key, Slot& slot) {
+  changes_.erase(slot.changed);
+  slot.changed = ++revision_;
+  changes_.emplace_hint(changes_.end(), slot.changed, key);
 }
 
 std::vector<world::RobotId> BeliefStore::robots() const {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <vector>
@@ -21,7 +22,7 @@ enum class Applied {
 
 /// Caps that keep a hostile or broken peer from exhausting memory.
 struct StoreLimits {
-  int32_t max_robots = 256;
+  int32_t max_robots = 255;  ///< as many as a tile of the fused map has room for
   int64_t max_pieces_per_robot = 1'000'000;
   int64_t max_edits = 10'000;
 };
@@ -51,6 +52,34 @@ class BeliefStore {
       for (const auto& [part, piece] : at->second.parts) visitor(piece);
   }
 
+  /// The same of one key.
+  template <typename Visitor>
+  void visitOf(const PieceKey& key, Visitor&& visitor) const {
+    const auto slot = slots_.find(key);
+    if (slot == slots_.end()) return;
+    for (const auto& [part, piece] : slot->second.parts) visitor(piece);
+  }
+
+  /// The topics of all robots.
+  template <typename Visitor>
+  void visitTopics(Visitor&& visitor) const {
+    for (const auto& [robot, sum] : sums_) {
+      for (auto at = slots_.lower_bound({robot, PieceKind::kTopic, kLowestIndex});
+           at != slots_.end() && at->first.robot == robot && at->first.kind == PieceKind::kTopic; ++at)
+        for (const auto& [part, piece] : at->second.parts) visitor(piece);
+    }
+  }
+
+  /// Grows with every change of what visit() takes.
+  uint64_t revision() const { return revision_; }
+
+  /// Keys whose usable parts have changed since a revision, each once. What went because a robot began a new
+  /// epoch is not among them: epochOf() tells.
+  template <typename Visitor>
+  void visitChanges(uint64_t since, Visitor&& visitor) const {
+    for (auto at = changes_.upper_bound(since); at != changes_.end(); ++at) visitor(at->second);
+  }
+
   /// The newest epoch of a robot that was heard of; -1 when it never was.
   int32_t epochOf(world::RobotId robot) const;
 
@@ -67,8 +96,11 @@ class BeliefStore {
   size_t numPieces() const { return slots_.size(); }
 
  private:
+  static constexpr std::array<int32_t, 3> kLowestIndex{INT32_MIN, INT32_MIN, INT32_MIN};
+
   struct Slot {
     world::Version version{-1, -1};                              // of the usable parts
+    uint64_t changed = 0;                                        // revision of their last change; 0 = none
     std::map<int32_t, Piece> parts;                              // usable, by part number
     std::map<world::Version, std::map<int32_t, Piece>> pending;  // newer, part 0 still lacking
   };
@@ -79,10 +111,13 @@ class BeliefStore {
   };
   void beginEpoch(world::RobotId robot, RobotSum& sum, int32_t epoch);
   void promote(Slot& slot, world::Version version);
+  void noteChange(const PieceKey& key, Slot& slot);
 
   StoreLimits limits_;
   std::map<PieceKey, Slot> slots_;
   std::map<world::RobotId, RobotSum> sums_;
+  uint64_t revision_ = 0;
+  std::map<uint64_t, PieceKey> changes_;  // the last of every slot, by its revision
 };
 
 }  // namespace shoal::mapping

@@ -17,7 +17,7 @@ namespace shoal::mapping {
 /// the label robot x 10000 + topic.
 ///
 /// @throws std::invalid_argument as matching::match() does for wrong options.
-/// Cost: O(cells log cells) plus the matching.
+/// Cost: O(cells) plus the matching. For a state that grows: FusedMap (fused_map.h).
 GlobalMap fuse(const BeliefStore& beliefs, const matching::MatcherOptions& options);
 
 }  // namespace shoal::mapping

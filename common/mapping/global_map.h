@@ -44,8 +44,18 @@ struct GlobalMap {
   std::vector<LabelSummary> labels;             ///< ascending by label; only those with cells
   uint64_t state_digest = 0;                    ///< of the state it was made from
 
-  /// Digest of cells and correspondences.
+  /// Digest of cells and correspondences: mapDigest() of the sum over cells of cellHash() x labelFactor().
   uint64_t digest() const;
 };
+
+/// A hash of all that a cell shows but its label.
+uint64_t cellHash(const world::CellIndex& cell, world::RobotId robot, world::Timestamp seen, float certainty);
+
+/// What a cell's hash is multiplied by for its label, modulo 2^64; odd. A sum over cells, so that whoever
+/// knows the sum of every topic's cells has the digest after a new matching without looking at them again.
+uint64_t labelFactor(world::GlobalLabel label);
+
+/// The digest of a map from the sum over its cells.
+uint64_t mapDigest(uint64_t sum_of_cells, const std::vector<Correspondence>& correspondences);
 
 }  // namespace shoal::mapping

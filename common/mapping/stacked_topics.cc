@@ -26,28 +26,34 @@ std::vector<int32_t> commonLayout(const std::vector<HeardTopic>& topics) {
 }  // namespace
 
 StackedTopics stack(const BeliefStore& beliefs, const std::set<world::RobotId>& excluded) {
-  std::map<TopicKey, HeardTopic> heard;
   std::map<TopicKey, int64_t> cells;
   beliefs.visit([&](const Piece& piece) {
-    if (excluded.contains(piece.key.robot)) return;
-    if (const auto* part = std::get_if<TopicPart>(&piece.content)) {
-      if (part->weight <= 0) return;
-      const world::TopicId id{piece.key.index[0]};
-      const auto [known, is_first] = heard.try_emplace(
-          {piece.key.robot, id},
-          HeardTopic{piece.key.robot, id, part->created, part->weight, 0, part->group_sizes, {}});
-      HeardTopic& topic = known->second;
-      if (!is_first && topic.group_sizes != part->group_sizes) return;  // part 0 decides
-      topic.words.insert(topic.words.end(), part->words.begin(), part->words.end());
-    } else if (const auto* brick = std::get_if<BrickPart>(&piece.content)) {
-      for (const BrickCell& c : brick->cells) ++cells[{piece.key.robot, c.topic}];
-    }
+    const auto* brick = std::get_if<BrickPart>(&piece.content);
+    if (brick == nullptr) return;
+    for (const BrickCell& c : brick->cells) ++cells[{piece.key.robot, c.topic}];
+  });
+  return stack(beliefs, excluded, cells);
+}
+
+StackedTopics stack(const BeliefStore& beliefs, const std::set<world::RobotId>& excluded,
+                    const std::map<TopicKey, int64_t>& cells) {
+  std::map<TopicKey, HeardTopic> heard;
+  beliefs.visitTopics([&](const Piece& piece) {
+    const auto* part = std::get_if<TopicPart>(&piece.content);
+    if (part == nullptr || part->weight <= 0 || excluded.contains(piece.key.robot)) return;
+    const world::TopicId id{piece.key.index[0]};
+    const auto [known, is_first] = heard.try_emplace(
+        {piece.key.robot, id},
+        HeardTopic{piece.key.robot, id, part->created, part->weight, 0, part->group_sizes, {}});
+    HeardTopic& topic = known->second;
+    if (!is_first && topic.group_sizes != part->group_sizes) return;  // part 0 decides
+    topic.words.insert(topic.words.end(), part->words.begin(), part->words.end());
   });
 
   StackedTopics stacked;
   for (auto& [key, topic] : heard) {
     // Honest parts share no word. Of others the first count stands.
-    std::ranges::sort(topic.words);
+    if (!std::ranges::is_sorted(topic.words)) std::ranges::sort(topic.words);
     const auto repeated = std::ranges::unique(topic.words, {}, &world::WordCount::word);
     topic.words.erase(repeated.begin(), repeated.end());
     topic.cells = cells.contains(key) ? cells.at(key) : 0;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <map>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "shoal/mapping/belief_store.h"
@@ -32,5 +34,10 @@ struct StackedTopics {
 /// robot). Others keep a label of their own.
 /// @param excluded  Robots that count as never heard.
 StackedTopics stack(const BeliefStore& beliefs, const std::set<world::RobotId>& excluded = {});
+
+/// The same by one who has counted the cells of every robot's map by topic; those without any may lack.
+/// Cost: O(words) of all topics.
+StackedTopics stack(const BeliefStore& beliefs, const std::set<world::RobotId>& excluded,
+                    const std::map<std::pair<world::RobotId, world::TopicId>, int64_t>& cells);
 
 }  // namespace shoal::mapping

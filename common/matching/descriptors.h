@@ -24,6 +24,7 @@ struct DescriptorSet {
   int32_t vocabulary_size = 0;
   std::vector<int32_t> group_first;  ///< first word of each word group, ascending, from 0; empty = one group
   std::vector<std::vector<Descriptor>> robots;
+  bool operator==(const DescriptorSet&) const = default;
 };
 
 /// @throws std::invalid_argument naming the robot and topic, and what would be right: words ascending and

@@ -25,6 +25,7 @@ struct MatcherOptions {
   std::optional<double> sigma = {};   ///< least similarity of a match, in [1e-9, 1]; none: usualSigma()
   std::optional<bool> distinct = {};  ///< labels of one robot stay apart; none: mergesOwn()
 
+  bool operator==(const MatcherOptions&) const = default;
   double leastSimilarity() const;
   bool keepsOwnApart() const { return distinct.value_or(!mergesOwn(matcher)); }
 };

@@ -17,6 +17,7 @@
 #include "shoal/comms/sender.h"
 #include "shoal/comms/window_meter.h"
 #include "shoal/mapping/belief_pieces.h"
+#include "shoal/mapping/fusion.h"
 #include "shoal/random.h"
 #include "shoal/wire/message_kind.h"
 #include "shoal/wire/piece_codec.h"

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace shoal::mapping {
+
+/// Cells of the fused map lie in tiles of 16 x 16 at one height.
+inline constexpr int32_t kTileEdge = 16;
+inline constexpr size_t kTileCells = kTileEdge * kTileEdge;
+
+/// What is said of every cell of a tile, value by value, so that cells are compared in vectors. A cell's
+/// place is (x mod 16) x 16 + y mod 16.
+struct alignas(64) TileColumns {
+  std::array<uint16_t, kTileCells> time{};      ///< rank of when it was seen, from 1; 0 = nothing is said
+  std::array<uint16_t, kTileCells> voice{};     ///< which robot's topic says it; 0 where nothing is said
+  std::array<uint8_t, kTileCells> certainty{};  ///< in steps of 1 / kCertaintySteps
+};
+
+/// Lets `said` into `newest` wherever it is as new or newer. Robots are taken in ascending order, so that of
+/// equally new ones the higher number stays.
+void takeNewer(const TileColumns& said, TileColumns& newest);
+
+}  // namespace shoal::mapping

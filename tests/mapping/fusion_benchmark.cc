@@ -1,0 +1,319 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Merging the maps of twelve robots, a million cells each: the newest wins, labels are translated. Windows of
+// 1000 x 1000 cells lie at random in 2500 x 2500; "relief" is a height field in 3-D, "flat" has one height.
+// Times are a cell that goes in. Every structure runs in a process of its own, unless a filter is given:
+// "cold" on fresh memory, "warm" in place: into what an earlier merge has left.
+#include <benchmark/benchmark.h>
+
+#include <sys/wait.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <memory>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#ifdef SHOAL_HAS_OCTOMAP
+#include <octomap/ColorOcTree.h>
+#endif
+
+#include "plain_fusion.h"
+#include "shoal/mapping/fused_map.h"
+#include "shoal/random.h"
+
+namespace {
+
+using namespace shoal;           // NOLINT: a program of its own
+using namespace shoal::mapping;  // NOLINT
+using world::CellIndex;
+using world::GlobalLabel;
+using world::RobotId;
+using world::TopicId;
+
+constexpr int32_t kRobots = 12, kTopics = 20, kPlace = 2500, kWindow = 1000;
+
+int32_t heightAt(int32_t x, int32_t y) {
+  return static_cast<int32_t>(
+      std::lround(8 * std::sin(x * 0.013) * std::cos(y * 0.011) + 3 * std::sin(x * 0.07 + y * 0.05)));
+}
+
+// A robot's cells in the order of its lawnmower; topics in patches of 10 x 10, three in a hundred astray.
+template <class Visit>
+void eachCell(int32_t robot, bool relief, int32_t window, Visit visit) {
+  Random random(3, static_cast<uint64_t>(robot));
+  const auto room = static_cast<uint64_t>(kPlace - kWindow);
+  const auto x0 = static_cast<int32_t>(random.below(room)), y0 = static_cast<int32_t>(random.below(room));
+  for (int32_t x = x0; x < x0 + window; ++x) {
+    for (int32_t y = y0; y < y0 + window; ++y) {
+      const uint64_t patch = random.uniform() < 0.03
+                                 ? random()
+                                 : mix64(static_cast<uint64_t>(x / 10 * 1000 + y / 10) + 7u * robot);
+      const int64_t second = int64_t{x - x0} / 16 * 40 + (y - y0) / 25 + robot * 37;
+      visit(CellIndex{x, y, relief ? heightAt(x, y) : 0}, TopicId{static_cast<int32_t>(patch % kTopics)},
+            world::Timestamp{second * 1'000'000});
+    }
+  }
+}
+
+// What the matching said: 25 labels in all.
+GlobalLabel labelOf(int32_t robot, TopicId topic) {
+  return GlobalLabel{(number(topic) * 7 + robot) % 25 * 10000 + 3};
+}
+
+struct Cell {
+  CellIndex cell;
+  int32_t robot;
+  TopicId topic;
+  world::Timestamp seen;
+};
+
+std::vector<Cell> cellsOfAll(bool relief) {
+  std::vector<Cell> cells;
+  for (int32_t r = 0; r < kRobots; ++r) {
+    eachCell(r, relief, kWindow, [&](const CellIndex& c, TopicId topic, world::Timestamp seen) {
+      cells.push_back({c, r, topic, seen});
+    });
+  }
+  return cells;
+}
+
+void report(benchmark::State& state, double cells) {
+  state.counters["ns_per_cell"] = benchmark::Counter(
+      cells * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+// Runs `merge(structure)` on a new structure each time, or again and again on one that it has filled before.
+template <class Structure, class Merge>
+void run(benchmark::State& state, double cells, bool warm, Merge merge) {
+  auto kept = std::make_unique<Structure>();
+  if (warm) merge(*kept);
+  for (auto _ : state) {
+    merge(*kept);
+    if (warm) continue;
+    state.PauseTiming();
+    kept = std::make_unique<Structure>();
+    state.ResumeTiming();
+  }
+  report(state, cells);
+}
+
+struct Held {
+  GlobalLabel label;
+  int32_t robot;
+  world::Timestamp seen;
+};
+
+void UnorderedMap(benchmark::State& state, bool relief, bool warm) {
+  const std::vector<Cell> cells = cellsOfAll(relief);
+  LabelTable labels;
+  for (int32_t r = 0; r < kRobots; ++r)
+    for (int32_t t = 0; t < kTopics; ++t) labels.set({RobotId{r}, TopicId{t}}, labelOf(r, TopicId{t}));
+  using Map = std::unordered_map<CellIndex, Held, world::CellHash>;
+  run<Map>(state, static_cast<double>(cells.size()), warm, [&](Map& map) {
+    map.reserve(5'000'000);
+    for (const Cell& c : cells) {
+      const Held mine{labels.of({RobotId{c.robot}, c.topic}), c.robot, c.seen};
+      const auto [held, is_new] = map.emplace(c.cell, mine);
+      if (!is_new && held->second.seen <= c.seen) held->second = mine;
+    }
+  });
+}
+
+#ifdef SHOAL_HAS_OCTOMAP
+// Its cells have no time: the last one told stays, which costs it nothing to find out.
+void OctoMap(benchmark::State& state, bool relief, bool warm) {
+  const std::vector<Cell> cells = cellsOfAll(relief);
+  struct Tree : octomap::ColorOcTree {
+    Tree() : octomap::ColorOcTree(1.0) {}
+  };
+  run<Tree>(state, static_cast<double>(cells.size()), warm, [&](Tree& tree) {
+    for (const Cell& c : cells) {
+      const octomap::OcTreeKey key(static_cast<uint16_t>(32768 + c.cell.x),
+                                   static_cast<uint16_t>(32768 + c.cell.y),
+                                   static_cast<uint16_t>(32768 + c.cell.z));
+      const auto label = static_cast<uint32_t>(number(labelOf(c.robot, c.topic)));
+      tree.updateNode(key, true, true)
+          ->setColor(static_cast<uint8_t>(label >> 16), static_cast<uint8_t>(label >> 8),
+                     static_cast<uint8_t>(label));
+    }
+  });
+}
+#endif
+
+// The tiles that all robots have filled, ready to be folded.
+std::map<TileIndex, MapTile> tilesOfAll(bool relief) {
+  std::map<TileIndex, MapTile> tiles;
+  for (int32_t r = 0; r < kRobots; ++r) {
+    std::map<TileIndex, std::vector<TileCell>> said;
+    eachCell(r, relief, kWindow, [&](const CellIndex& c, TopicId topic, world::Timestamp seen) {
+      said[{c.x >> 4, c.y >> 4, c.z}].push_back(
+          {static_cast<uint8_t>((c.x & 15) * kTileEdge + (c.y & 15)), 40, topic, seen});
+    });
+    for (const auto& [index, cells] : said) tiles[index].set(RobotId{r}, cells);
+  }
+  return tiles;
+}
+
+// Ours: the newest of every cell with its time, robot, topic and certainty, and its label in a column beside.
+void Tiles(benchmark::State& state, bool relief, bool warm) {
+  LabelTable labels;
+  for (int32_t r = 0; r < kRobots; ++r)
+    for (int32_t t = 0; t < kTopics; ++t) labels.set({RobotId{r}, TopicId{t}}, labelOf(r, TopicId{t}));
+  std::map<TileIndex, MapTile> tiles = tilesOfAll(relief);
+  using Label = std::array<GlobalLabel, kTileCells>;
+  struct Merged {
+    std::vector<Label> labels;
+    std::vector<TileColumns> newest;
+  };
+  std::vector<GlobalLabel> of_voice;
+  run<Merged>(state, kRobots * double{kWindow} * kWindow, warm, [&](Merged& merged) {
+    merged.labels.resize(tiles.size());
+    if (!warm) merged.newest.resize(tiles.size());
+    size_t t = 0;
+    for (auto& [index, tile] : tiles) {
+      tile.fold({});
+      of_voice.clear();
+      for (const Voice& voice : tile.voices()) of_voice.push_back(labels.of(voice));
+      const TileColumns& newest = tile.newest();
+      Label& label = merged.labels[t];
+      for (size_t i = 0; i < kTileCells; ++i) label[i] = of_voice[newest.voice[i]];
+      if (!warm) merged.newest[t] = newest;  // where the tiles' own memory would be fresh too
+      ++t;
+    }
+    benchmark::ClobberMemory();
+  });
+  state.counters["tiles"] = static_cast<double>(tiles.size());
+}
+
+// A robot's map as pieces.
+void offer(BeliefStore& store, int32_t robot, int32_t window) {
+  std::map<std::array<int32_t, 3>, BrickPart> bricks;
+  eachCell(robot, true, window, [&](const CellIndex& c, TopicId topic, world::Timestamp seen) {
+    bricks[brickOf(c)].cells.push_back({c, topic, seen});
+  });
+  for (auto& [index, part] : bricks) {
+    std::ranges::sort(part.cells);
+    store.apply({{RobotId{robot}, PieceKind::kBrick, index}, {0, 1}, 0, 1, std::move(part)});
+  }
+  for (int32_t t = 0; t < kTopics; ++t) {
+    store.apply({{RobotId{robot}, PieceKind::kTopic, {t, 0, 0}},
+                 {0, 1},
+                 0,
+                 1,
+                 TopicPart{{t}, 100, {100}, {{t * 5, 60}, {t * 5 + 1 + robot % 3, 40}}}});
+  }
+}
+
+// A mission of twelve robots with a million cells in all: what one more brick costs a node that fuses.
+BeliefStore millionCells() {
+  BeliefStore store;
+  for (int32_t r = 0; r < kRobots; ++r) offer(store, r, 289);
+  return store;
+}
+
+Piece oneBrick(int32_t observation) {
+  Random random(9, static_cast<uint64_t>(observation));
+  BrickPart part;
+  for (int32_t x = 0; x < 16; ++x)
+    for (int32_t y = 0; y < 16; ++y) {
+      part.cells.push_back({{1600 + x, 1600 + y, 0},
+                            TopicId{static_cast<int32_t>(random.below(kTopics))},
+                            {int64_t{observation} * 1'000'000}});
+    }
+  return {{RobotId{3}, PieceKind::kBrick, {100, 100, 0}}, {0, observation}, 0, 1, part};
+}
+
+void OneMoreBrickFusedMap(benchmark::State& state) {
+  BeliefStore store = millionCells();
+  FusedMap fused;
+  fused.update(store, matching::usualMatcher());
+  int32_t observation = 100'000;
+  for (auto _ : state) {
+    store.apply(oneBrick(++observation));
+    fused.update(store, matching::usualMatcher());
+    benchmark::DoNotOptimize(fused.digest());
+  }
+  state.counters["cells"] = static_cast<double>(fused.numCells());
+}
+BENCHMARK(OneMoreBrickFusedMap)->Unit(benchmark::kMillisecond);
+
+void OneMoreBrickFusedMapCellsInARow(benchmark::State& state) {
+  BeliefStore store = millionCells();
+  FusedMap fused;
+  int32_t observation = 100'000;
+  for (auto _ : state) {
+    store.apply(oneBrick(++observation));
+    fused.update(store, matching::usualMatcher());
+    benchmark::DoNotOptimize(fused.map());
+  }
+}
+BENCHMARK(OneMoreBrickFusedMapCellsInARow)->Unit(benchmark::kMillisecond);
+
+void OneMoreBrickPlainly(benchmark::State& state) {
+  BeliefStore store = millionCells();
+  int32_t observation = 100'000;
+  for (auto _ : state) {
+    store.apply(oneBrick(++observation));
+    benchmark::DoNotOptimize(fusePlainly(store, matching::usualMatcher()).digest());
+  }
+}
+BENCHMARK(OneMoreBrickPlainly)->Unit(benchmark::kMillisecond)->Iterations(2);
+
+// From pieces to the fused map, nothing known before.
+void WholeFusedMapFromPieces(benchmark::State& state) {
+  const BeliefStore store = millionCells();
+  for (auto _ : state) {
+    FusedMap fused;
+    fused.update(store, matching::usualMatcher());
+    benchmark::DoNotOptimize(fused.digest());
+  }
+}
+BENCHMARK(WholeFusedMapFromPieces)->Unit(benchmark::kMillisecond)->Iterations(3);
+
+#define BOTH_WAYS(Structure, iterations)                 \
+  BENCHMARK_CAPTURE(Structure, relief_cold, true, false) \
+      ->Unit(benchmark::kMillisecond)                    \
+      ->Iterations(iterations);                          \
+  BENCHMARK_CAPTURE(Structure, relief_warm, true, true)  \
+      ->Unit(benchmark::kMillisecond)                    \
+      ->Iterations(iterations);                          \
+  BENCHMARK_CAPTURE(Structure, flat_cold, false, false)  \
+      ->Unit(benchmark::kMillisecond)                    \
+      ->Iterations(iterations);                          \
+  BENCHMARK_CAPTURE(Structure, flat_warm, false, true)->Unit(benchmark::kMillisecond)->Iterations(iterations)
+BOTH_WAYS(Tiles, 5);
+BOTH_WAYS(UnorderedMap, 2);
+#ifdef SHOAL_HAS_OCTOMAP
+BOTH_WAYS(OctoMap, 1);
+#endif
+
+const char* const kNames[] = {"OneMoreBrick", "WholeFusedMap", "Tiles", "UnorderedMap", "OctoMap"};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  bool filtered = false;
+  for (int i = 1; i < argc; ++i)
+    filtered = filtered || std::string(argv[i]).starts_with("--benchmark_filter") ||
+               std::string(argv[i]).starts_with("--benchmark_list");
+  if (!filtered) {
+    std::string command = std::string("'") + argv[0] + "'";
+    for (int i = 1; i < argc; ++i) command += std::string(" '") + argv[i] + "'";
+    for (const char* name : kNames) {
+      for (const char* scene : {"relief_cold", "relief_warm", "flat_cold", "flat_warm", ""}) {
+        const bool whole = std::string(name).find("Brick") != std::string::npos || *name == 'W';
+        if (whole != (*scene == 0)) continue;
+        const std::string filter = std::string(name) + (whole ? "" : "/") + scene;
+        const int status = std::system((command + " '--benchmark_filter=^" + filter + "'").c_str());
+        if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) return 1;
+      }
+    }
+    return 0;
+  }
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  benchmark::RunSpecifiedBenchmarks();
+  return 0;
+}
