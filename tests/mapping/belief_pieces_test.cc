@@ -69,6 +69,23 @@ TEST(BeliefChangesTest, SaysOnceThatATopicIsGone) {
   EXPECT_TRUE(changes.update(next).empty());
 }
 
+// A robot's twins part again (topics/twin_labels.h): a topic that was gone is there once more.
+TEST(BeliefChangesTest, SendsATopicThatComesBack) {
+  BeliefChanges changes;
+  BeliefStore store;
+  for (int i = 0; i < 3; ++i) {
+    LocalBelief step = belief(i);
+    if (i == 1) step.topics.pop_back();
+    for (const Piece& piece : changes.update(step)) store.apply(piece);
+    store.visit([&](const Piece& piece) {
+      const auto* part = std::get_if<TopicPart>(&piece.content);
+      if (part == nullptr || piece.key.index[0] != 4) return;
+      EXPECT_EQ(part->weight, i == 1 ? 0 : 20);
+      EXPECT_EQ(piece.version.observation, i);
+    });
+  }
+}
+
 TEST(BeliefChangesTest, ChangesAddUpToTheWhole) {
   BeliefChanges changes;
   BeliefStore by_changes;
