@@ -90,18 +90,16 @@ void MissionState::hear(const comms::Packet& packet, comms::Stats& stats) {
     case wire::MessageKind::kBrick:
     case wire::MessageKind::kCertainty:
     case wire::MessageKind::kEdit: {
-      const auto piece = wire::decodePiece(header->kind, packet.bytes);
-      if (!piece) return stats.countRejected(wire::name(piece.error()));
-      const bool is_edit = piece->key.robot == mapping::kOperators;  // whoever made it, any node may say it
-      if (!is_edit && name(piece->key.robot) != channel->node) return stats.countRejected("wrong sender");
-      switch (apply(*piece)) {
-        case mapping::Applied::kConflict:
-          return stats.countRejected("conflict");
-        case mapping::Applied::kRejected:
-          return stats.countRejected("over limit");
-        default:
-          return;
+      const auto pieces = wire::decodePieces(header->kind, packet.bytes);
+      if (!pieces) return stats.countRejected(wire::name(pieces.error()));
+      for (const mapping::Piece& piece : *pieces) {
+        const bool is_edit = piece.key.robot == mapping::kOperators;  // whoever made it, any node may say it
+        if (!is_edit && name(piece.key.robot) != channel->node) return stats.countRejected("wrong sender");
+        const mapping::Applied applied = apply(piece);
+        if (applied == mapping::Applied::kConflict) stats.countRejected("conflict");
+        if (applied == mapping::Applied::kRejected) stats.countRejected("over limit");
       }
+      return;
     }
     default:
       return;  // what fusion nodes publish for people is not part of the state

@@ -19,8 +19,10 @@ PieceAudit auditOf(const std::string& path, int32_t mission) {
     const auto header = wire::peek(event->packet.bytes);
     const auto channel = comms::parseChannel(event->packet.channel);
     if (!header || !channel || header->mission != mission) continue;
-    const auto piece = wire::decodePiece(header->kind, event->packet.bytes);
-    if (piece && world::name(piece->key.robot) == channel->node) pieces.hear(*piece);
+    const auto heard = wire::decodePieces(header->kind, event->packet.bytes);
+    if (!heard) continue;
+    for (const mapping::Piece& piece : *heard)
+      if (world::name(piece.key.robot) == channel->node) pieces.hear(piece);
   }
   return pieces;
 }

@@ -55,6 +55,22 @@ std::string queueKey(const mapping::PieceKey& key, int32_t part) {
   return text + '/' + std::to_string(part);
 }
 
+// Bytes of a message on a channel that carry most under a thin budget: comms/budget.h.
+size_t mostBytes(const std::string& channel, int64_t budget) {
+  const size_t best = comms::efficientDatagram(budget, kPieceOverheadBytes);
+  return std::min(wire::maxPayload(channel.size()), best - comms::wireSize(channel.size(), 0));
+}
+
+// Bricks that wait share datagrams.
+std::optional<comms::Packet> join(std::span<const comms::Packet* const> packets, int64_t budget) {
+  std::vector<std::span<const uint8_t>> messages;
+  for (const comms::Packet* packet : packets) messages.emplace_back(packet->bytes);
+  const std::string& channel = packets.front()->channel;
+  auto bytes = wire::encodeTogether(messages, mostBytes(channel, budget));
+  if (!bytes) return std::nullopt;
+  return comms::Packet{channel, std::move(*bytes)};
+}
+
 void writeOut(const std::string& folder, const mapping::LocalBelief& belief, double cell_size_m,
               const std::vector<mapping::StampedPose>& path) {
   mapping::writeBelief(folder, belief, world::Grid(cell_size_m));
@@ -76,6 +92,7 @@ Agent::Agent(const AgentOptions& options, world::ObservationSource& source, comm
         comms::SenderOptions sender;
         sender.bytes_per_s = options.budget;
         sender.stamp = [](comms::Packet& packet, int64_t now_us) { wire::stampTime(packet.bytes, {now_us}); };
+        sender.join = [budget = options.budget](const auto& packets) { return join(packets, budget); };
         if (options.start_us > 0) sender.resumed_at_us = options.start_us;
         sender.make_heartbeat = [this](int64_t now_us) { return heartbeat(now_us); };
         return sender;
@@ -136,10 +153,7 @@ void Agent::publish() {
   if (path_.empty()) return;
   for (const mapping::Piece& whole : changes_.update(belief_)) {
     const std::string channel = comms::channelName(name_, wire::channelKind(wire::kindOf(whole)));
-    // Under a thin budget small datagrams use more of it: comms/budget.h.
-    const size_t best = comms::efficientDatagram(options_.budget, kPieceOverheadBytes);
-    const size_t most = best - comms::wireSize(channel.size(), 0);
-    const auto parts = wire::cutToFit(whole, std::min(wire::maxPayload(channel.size()), most));
+    const auto parts = wire::cutToFit(whole, mostBytes(channel, options_.budget));
     for (const mapping::Piece& part : parts) {
       own_.apply(part);
       if (options_.fuse) others_.apply(part);

@@ -2,6 +2,7 @@
 #include "shoal/comms/send_queue.h"
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -62,6 +63,7 @@ void SendQueue::offer(TrafficClass traffic, std::string_view key, Packet packet)
   if (entry.waiting) {
     of(traffic).waiting_bytes += cost(packet) - cost(entry.packet);
     entry.packet = std::move(packet);
+    ++revision_;
     return;
   }
   leave(found);
@@ -74,33 +76,58 @@ void SendQueue::forget(std::string_view key) {
   if (found == entries_.end()) return;
   leave(found);
   entries_.erase(found);
+  ++revision_;
 }
 
 std::optional<SendQueue::Next> SendQueue::next(int64_t now_us) const {
-  if (const Class* chosen = choose()) {
-    const auto& [key, entry] = *chosen->waiting.begin()->second;
-    return Next{entry.traffic, key, &entry.packet, false};
-  }
-  if (rotation_.empty() || *nextResend() > now_us) return std::nullopt;
-  const auto& [key, entry] = *rotation_.begin()->second;
-  return Next{entry.traffic, key, &entry.packet, true};
+  const std::vector<Next> first = nextOf(now_us, 1);
+  if (first.empty()) return std::nullopt;
+  return first.front();
 }
 
-void SendQueue::markSent(int64_t now_us) {
-  const Class* chosen = choose();
-  SHOAL_DEMAND(chosen != nullptr || !rotation_.empty());
-  const auto it = chosen != nullptr ? chosen->waiting.begin()->second : rotation_.begin()->second;
-  Entry& entry = it->second;
-  if (chosen != nullptr) {
-    Class& served = of(entry.traffic);
-    pass_ = served.pass;
-    served.pass += cost(entry.packet) * (kStride / served.weight);
+std::vector<SendQueue::Next> SendQueue::nextOf(int64_t now_us, size_t most) const {
+  std::vector<Next> all;
+  for (const auto& it : chosen(now_us, most))
+    all.push_back({it->second.traffic, it->first, &it->second.packet, !it->second.waiting});
+  return all;
+}
+
+// New content when there is any, else what is due to be said again.
+std::vector<SendQueue::Entries::const_iterator> SendQueue::chosen(int64_t now_us, size_t most) const {
+  std::vector<Entries::const_iterator> all;
+  const Class* waiting = choose();
+  for (const auto& [place, it] : waiting != nullptr ? waiting->waiting : rotation_) {
+    if (all.size() == most) break;
+    const Entry& entry = it->second;
+    if (waiting == nullptr && entry.last_sent_us + min_resend_interval_us_ > now_us) break;
+    const bool follows = all.empty() || (entry.traffic == all.front()->second.traffic &&
+                                         entry.packet.channel == all.front()->second.packet.channel);
+    if (follows) all.push_back(it);
   }
-  leave(it);
-  entry.waiting = false;
-  entry.place = next_place_++;
-  entry.last_sent_us = now_us;
-  rotation_.emplace(entry.place, it);
+  return all;
+}
+
+void SendQueue::markSent(int64_t now_us, size_t count, size_t wire_bytes) {
+  const bool is_new = choose() != nullptr;
+  // Whatever the time: who marks has been told what was due.
+  const auto sent = chosen(is_new ? now_us : std::numeric_limits<int64_t>::max(), count);
+  SHOAL_DEMAND(count > 0 && sent.size() == count);
+  if (is_new) {
+    const Entry& first = sent.front()->second;
+    Class& served = of(first.traffic);
+    pass_ = served.pass;
+    const int64_t bytes = wire_bytes > 0 ? static_cast<int64_t>(wire_bytes) : cost(first.packet);
+    served.pass += bytes * (kStride / served.weight);
+  }
+  for (const auto& each : sent) {
+    const auto it = entries_.find(each->first);
+    leave(it);
+    it->second.waiting = false;
+    it->second.place = next_place_++;
+    it->second.last_sent_us = now_us;
+    rotation_.emplace(it->second.place, it);
+  }
+  ++revision_;
 }
 
 std::optional<int64_t> SendQueue::nextResend() const {
@@ -123,6 +150,7 @@ const SendQueue::Class* SendQueue::choose() const {
 }
 
 void SendQueue::await(Entries::iterator it) {
+  ++revision_;
   Entry& entry = it->second;
   Class& joined = of(entry.traffic);
   if (choose() == nullptr) {  // nobody is owed anything: utility decides afresh

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "shoal/comms/packet.h"
 
@@ -59,8 +60,19 @@ class SendQueue {
   /// What to send now; nothing when nothing new waits and all was sent recently.
   std::optional<Next> next(int64_t now_us) const;
 
+  /// next(), and up to most - 1 more that may follow it: of its class and on its channel, in the order in
+  /// which they would go.
+  std::vector<Next> nextOf(int64_t now_us, size_t most) const;
+
   /// next() was sent. Aborts when there was nothing to send.
-  void markSent(int64_t now_us);
+  void markSent(int64_t now_us) { markSent(now_us, 1, 0); }
+
+  /// The first `count` of nextOf() were sent as one datagram of so many bytes on the wire; 0 = those of the
+  /// packet.
+  void markSent(int64_t now_us, size_t count, size_t wire_bytes);
+
+  /// Grows with everything that may change what nextOf() says, but for time.
+  uint64_t revision() const { return revision_; }
 
   /// When content is due to be sent again, if nothing new comes.
   std::optional<int64_t> nextResend() const;
@@ -90,6 +102,7 @@ class SendQueue {
   const Class& of(TrafficClass traffic) const { return classes_[static_cast<size_t>(traffic)]; }
   Class& of(TrafficClass traffic) { return classes_[static_cast<size_t>(traffic)]; }
   const Class* choose() const;
+  std::vector<Entries::const_iterator> chosen(int64_t now_us, size_t most) const;
   void await(Entries::iterator it);
   void leave(Entries::iterator it);
 
@@ -97,6 +110,7 @@ class SendQueue {
   std::array<Class, kNumTrafficClasses> classes_;
   int64_t pass_ = 0;  // of the class served last; where a class that was idle joins
   uint64_t next_place_ = 0;
+  uint64_t revision_ = 0;
   Entries entries_;
   Line rotation_;  // in order of sending
 };

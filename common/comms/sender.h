@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -32,6 +34,10 @@ struct SenderOptions {
 
   /// Writes the time of sending into a copy of an offered packet, which must keep its size. None when empty.
   std::function<void(Packet& packet, int64_t now_us)> stamp = {};
+
+  /// Makes one packet of several that were offered, all of one class and channel; nothing when they cannot
+  /// share a datagram or it would be too long. Then more is said with fewer headers. None when empty.
+  std::function<std::optional<Packet>(std::span<const Packet* const> packets)> join = {};
 
   /// The process came back after a crash and may have used its whole budget up to this mission time.
   std::optional<int64_t> resumed_at_us = {};
@@ -70,6 +76,16 @@ class Sender {
   WorstWindow worstWindow() const { return budget_.worst(); }
 
  private:
+  // A datagram made of the first `count` that are next, as long as the queue stays as it is.
+  struct Made {
+    uint64_t revision = 0;
+    Packet packet;
+    size_t count = 0;
+    TrafficClass traffic{};
+    bool resent = false;
+  };
+
+  const Made* make(int64_t now_us);
   int64_t earliest(int64_t now_us, const Packet& packet) const;
   void send(const Packet& packet, TrafficClass traffic, bool resent, int64_t now_us);
 
@@ -79,6 +95,8 @@ class Sender {
   Budget budget_;
   SendQueue queue_;
   HeartbeatPacer heartbeat_;
+  std::optional<Made> made_;
+  std::array<size_t, kNumTrafficClasses> joined_{};  // how many shared the last datagram of a class
   bool heartbeat_went_last_ = false;
   WallPacer pacer_;
   Stats stats_;

@@ -1,73 +1,188 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <utility>
+
 #include "shoal/demand.h"
 #include "shoal/wire/cells_coder.h"
+#include "shoal/wire/cut.h"
 #include "shoal/wire/limits.h"
 #include "shoal/wire/payloads.h"
 
 namespace shoal::wire {
 namespace {
 
-// Topics, then times, of the cells of a brick.
-template <typename Coder>
-bool codeColumns(Coder& coder, const Occupancy& occupancy, Palette& topics, Palette& times) {
-  const auto neighbours = neighboursOf(occupancy);
-  const auto size = [](const Palette& palette) { return static_cast<int32_t>(palette.values.size()); };
-  return codePalette(coder, world::kMaxTopicId, kMaxBrickCells, topics.values) &&
-         codeIndices(coder, neighbours, size(topics), Scale::kNames, topics.indices) &&
-         codeTimes(coder, kMaxTimeUs, kMaxBrickCells, times.values) &&
-         codeIndices(coder, neighbours, size(times), Scale::kOrder, times.indices) && !coder.overrun();
-}
+using mapping::BrickPart;
+using mapping::CertaintyPart;
+using mapping::Piece;
 
-}  // namespace
+// What says which brick comes next, of what version: close to the one before.
+class HeaderCoder {
+ public:
+  template <typename Coder>
+  bool code(Coder& coder, Piece& piece) {
+    auto& [x, y, z] = piece.key.index;
+    const std::array<int32_t, 3> before = before_;
+    int32_t& observation = piece.version.observation;
+    if (first_) {
+      for (int32_t* number : {&x, &y, &z})
+        *number = unzigzag(static_cast<uint32_t>(codeWide(coder, zigzag(*number))));
+      observation = static_cast<int32_t>(codeWide(coder, static_cast<uint64_t>(observation)));
+      row_y_ = y;
+      first_ = false;
+    } else {
+      x = forward(coder, x_, before[0], x);
+      y = x == before[0] ? forward(coder, y_, before[1], y) : around(coder, row_, row_y_, y);
+      if (x != before[0]) row_y_ = y;
+      z = x == before[0] && y == before[1] ? forward(coder, above_, before[2] + 1, z)
+                                           : around(coder, z_, before[2], z);
+      observation = around(coder, version_, observation_, observation);
+    }
+    if (coder.bit(is_part_, piece.num_parts > 1 ? 1 : 0) != 0) {
+      piece.num_parts = static_cast<int32_t>(coder.direct(static_cast<uint64_t>(piece.num_parts), 8));
+      piece.part = static_cast<int32_t>(coder.direct(static_cast<uint64_t>(piece.part), 8));
+      if (piece.num_parts < 2) return false;
+    } else {
+      piece.num_parts = 1;
+      piece.part = 0;
+    }
+    before_ = piece.key.index;
+    observation_ = observation;
+    return isBrick(piece.key.index) && observation >= 0;
+  }
 
-Bytes encodeBrick(const mapping::BrickPart& brick) {
-  Encoder encoder;
-  const Occupancy occupancy = codeOccupancy(encoder, Occupancy::of(brick.cells));
-  Palette topics = Palette::of(brick.cells, [](const auto& c) -> int64_t { return number(c.topic); });
-  Palette times = Palette::of(brick.cells, [](const auto& c) { return c.seen.us; });
-  SHOAL_DEMAND(codeColumns(encoder, occupancy, topics, times));
-  return encoder.finish();
-}
+ private:
+  // Modulo 2^32 whatever is read; what cannot be is found by its range afterwards.
+  template <typename Coder>
+  static int32_t forward(Coder& coder, SmallNumber& model, int32_t from, int32_t to) {
+    const uint32_t step = static_cast<uint32_t>(to) - static_cast<uint32_t>(from);
+    return static_cast<int32_t>(static_cast<uint32_t>(from) + model.code(coder, step));
+  }
+  template <typename Coder>
+  static int32_t around(Coder& coder, SmallNumber& model, int32_t from, int32_t to) {
+    const auto step = static_cast<int32_t>(static_cast<uint32_t>(to) - static_cast<uint32_t>(from));
+    const auto coded = static_cast<uint32_t>(unzigzag(model.code(coder, zigzag(step))));
+    return static_cast<int32_t>(static_cast<uint32_t>(from) + coded);
+  }
 
-bool decodeBrick(std::span<const uint8_t> payload, const std::array<int32_t, 3>& index, int32_t num_cells,
-                 mapping::BrickPart& brick) {
-  Decoder decoder(payload);
-  const Occupancy occupancy = codeOccupancy(decoder, {});
-  if (occupancy.numCells() != num_cells) return false;
-  Palette topics;
-  Palette times;
-  if (!codeColumns(decoder, occupancy, topics, times)) return false;
-  const auto cells = occupancy.cells(index);
-  for (size_t i = 0; i < cells.size(); ++i) {
-    const int64_t topic = topics.values[static_cast<size_t>(topics.indices[i])];
-    brick.cells.push_back({cells[i],
-                           world::TopicId{static_cast<int32_t>(topic)},
-                           {times.values[static_cast<size_t>(times.indices[i])]}});
+  bool first_ = true;
+  std::array<int32_t, 3> before_{};
+  int32_t row_y_ = 0, observation_ = 0;
+  SmallNumber x_, y_, row_, above_, z_, version_;
+  AdaptiveBit is_part_{64000, 10};
+};
+
+// Which bricks of what versions, then which of their cells. `ends` gets how many cells there are up to each
+// brick's end.
+template <typename Coder, typename OccupancyOf>
+bool codeBricks(Coder& coder, std::span<Piece> pieces, OccupancyOf occupancy_of, CellField& field,
+                std::vector<size_t>& ends) {
+  HeaderCoder headers;
+  for (size_t i = 0; i < pieces.size(); ++i) {
+    if (!headers.code(coder, pieces[i]) || coder.overrun()) return false;
+    if (i > 0 && !(pieces[i - 1].key.index < pieces[i].key.index)) return false;
+  }
+  GeometryCoder geometry;
+  for (size_t i = 0; i < pieces.size(); ++i) {
+    const size_t before = field.cells().size();
+    geometry.code(coder, pieces[i].key.index, occupancy_of(i), field);
+    const size_t cells = field.cells().size();
+    if (cells > kMaxCellsPerMessage || cells == before || coder.overrun()) return false;
+    ends.push_back(cells);
   }
   return true;
 }
 
-Bytes encodeCertainty(const mapping::CertaintyPart& certainty) {
+// The pieces without their content, for codeBricks() to go through.
+std::vector<Piece> headersOf(std::span<const Piece* const> pieces) {
+  std::vector<Piece> headers;
+  for (const Piece* piece : pieces)
+    headers.push_back({piece->key, piece->version, piece->part, piece->num_parts, {}});
+  return headers;
+}
+
+// Encodes where the cells of `pieces` are.
+template <typename Part>
+void encodeWhere(Encoder& encoder, std::span<const Piece* const> pieces, CellField& field) {
+  std::vector<Piece> headers = headersOf(pieces);
+  std::vector<size_t> ends;
+  const auto occupancy = [&](size_t i) { return Occupancy::of(std::get<Part>(pieces[i]->content).cells); };
+  SHOAL_DEMAND(codeBricks(encoder, headers, occupancy, field, ends));
+}
+
+template <typename Coder>
+bool codeColumns(Coder& coder, const CellField& field, Palette& topics, Palette& times) {
+  return codePalette(coder, world::kMaxTopicId, kMaxCellsPerMessage, topics.values) &&
+         codeIndices(coder, field, topics.size(), Scale::kNames, topics.indices) &&
+         codeTimes(coder, kMaxTimeUs, kMaxCellsPerMessage, times.values) &&
+         codeIndices(coder, field, times.size(), Scale::kOrder, times.indices) && !coder.overrun();
+}
+
+bool decodeWhere(Decoder& decoder, std::span<Piece> pieces, CellField& field, std::vector<size_t>& ends) {
+  return codeBricks(
+      decoder, pieces, [](size_t) { return Occupancy{}; }, field, ends);
+}
+
+}  // namespace
+
+Bytes encodeBricks(std::span<const Piece* const> pieces) {
   Encoder encoder;
-  const Occupancy occupancy = codeOccupancy(encoder, Occupancy::of(certainty.cells));
-  std::vector<int32_t> steps;
-  for (const auto& c : certainty.cells) steps.push_back(c.steps);
-  SHOAL_DEMAND(codeLevels(encoder, neighboursOf(occupancy), mapping::kCertaintySteps + 1, steps));
+  CellField field;
+  encodeWhere<BrickPart>(encoder, pieces, field);
+  std::vector<int64_t> topics, times;
+  for (const Piece* piece : pieces) {
+    for (const auto& c : std::get<BrickPart>(piece->content).cells) {
+      topics.push_back(number(c.topic));
+      times.push_back(c.seen.us);
+    }
+  }
+  Palette topic_palette = Palette::of(std::move(topics)), time_palette = Palette::of(std::move(times));
+  SHOAL_DEMAND(codeColumns(encoder, field, topic_palette, time_palette));
   return encoder.finish();
 }
 
-bool decodeCertainty(std::span<const uint8_t> payload, const std::array<int32_t, 3>& index, int32_t num_cells,
-                     mapping::CertaintyPart& certainty) {
+bool decodeBricks(std::span<const uint8_t> payload, std::span<Piece> pieces) {
   Decoder decoder(payload);
-  const Occupancy occupancy = codeOccupancy(decoder, {});
-  if (occupancy.numCells() != num_cells) return false;
-  std::vector<int32_t> steps;
-  if (!codeLevels(decoder, neighboursOf(occupancy), mapping::kCertaintySteps + 1, steps)) return false;
-  const auto cells = occupancy.cells(index);
-  for (size_t i = 0; i < cells.size(); ++i) {
-    certainty.cells.push_back({cells[i], static_cast<uint8_t>(steps[i])});
+  CellField field;
+  std::vector<size_t> ends;
+  Palette topics, times;
+  if (!decodeWhere(decoder, pieces, field, ends) || !codeColumns(decoder, field, topics, times)) return false;
+  for (size_t i = 0, cell = 0; i < pieces.size(); ++i) {
+    BrickPart brick;
+    for (; cell < ends[i]; ++cell) {
+      const world::TopicId topic{static_cast<int32_t>(topics.at(cell))};
+      brick.cells.push_back({field.cells()[cell], topic, {times.at(cell)}});
+    }
+    pieces[i].content = std::move(brick);
   }
-  return !decoder.overrun();
+  return true;
+}
+
+Bytes encodeCertainties(std::span<const Piece* const> pieces) {
+  Encoder encoder;
+  CellField field;
+  encodeWhere<CertaintyPart>(encoder, pieces, field);
+  std::vector<int32_t> steps;
+  for (const Piece* piece : pieces)
+    for (const auto& c : std::get<CertaintyPart>(piece->content).cells) steps.push_back(c.steps);
+  SHOAL_DEMAND(codeLevels(encoder, field, mapping::kCertaintySteps + 1, steps));
+  return encoder.finish();
+}
+
+bool decodeCertainties(std::span<const uint8_t> payload, std::span<Piece> pieces) {
+  Decoder decoder(payload);
+  CellField field;
+  std::vector<size_t> ends;
+  std::vector<int32_t> steps;
+  if (!decodeWhere(decoder, pieces, field, ends) ||
+      !codeLevels(decoder, field, mapping::kCertaintySteps + 1, steps) || decoder.overrun()) {
+    return false;
+  }
+  for (size_t i = 0, cell = 0; i < pieces.size(); ++i) {
+    CertaintyPart part;
+    for (; cell < ends[i]; ++cell)
+      part.cells.push_back({field.cells()[cell], static_cast<uint8_t>(steps[cell])});
+    pieces[i].content = std::move(part);
+  }
+  return true;
 }
 
 }  // namespace shoal::wire

@@ -1,203 +1,231 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "shoal/wire/cells_coder.h"
 
-#include <bit>
-#include <limits>
+#include <cstdlib>
 #include <numeric>
+
+#include "shoal/wire/range_coder.h"
 
 namespace shoal::wire {
 namespace {
 
-constexpr int kEdge = Occupancy::kEdge;
-
-// The bounds of what is occupied; of an empty brick, the first cell.
-struct Box {
-  int x0 = 0, x1 = 0, y0 = 0, y1 = 0, z0 = 0, z1 = 0;
+// Values that a cell's surroundings suggest, best first.
+struct Candidates {
+  static constexpr size_t kMost = 4;
+  std::array<int32_t, kMost> value{}, votes{};
+  size_t count = 0;
+  int32_t all_votes = 0;
 };
 
-Box boundsOf(const Occupancy& occupancy) {
-  Box box{kEdge, -1, kEdge, -1, kEdge, -1};
-  for (int x = 0; x < kEdge; ++x) {
-    for (int y = 0; y < kEdge; ++y) {
-      const uint16_t column = occupancy.column(x, y);
-      if (column == 0) continue;
-      box.x0 = std::min(box.x0, x);
-      box.x1 = std::max(box.x1, x);
-      box.y0 = std::min(box.y0, y);
-      box.y1 = std::max(box.y1, y);
-      box.z0 = std::min(box.z0, std::countr_zero(column));
-      box.z1 = std::max(box.z1, static_cast<int>(std::bit_width(column)) - 1);
-    }
+Candidates candidatesOf(const std::array<int32_t, kNumNear>& near) {
+  std::array<int32_t, kNumNear> value{}, votes{};
+  size_t count = 0;
+  Candidates best;
+  for (size_t k = 0; k < kNumNear; ++k) {
+    if (near[k] < 0) continue;
+    const int32_t weight = k < kNearColumns.size() ? kNearColumns[k].weight : kBelowWeight;
+    best.all_votes += weight;
+    size_t i = 0;
+    while (i < count && value[i] != near[k]) ++i;
+    if (i == count) value[count++] = near[k];
+    votes[i] += weight;
   }
-  return box.x1 < 0 ? Box{} : box;
+  while (best.count < std::min(count, Candidates::kMost)) {  // of equal votes the nearer first
+    size_t top = 0;
+    for (size_t i = 1; i < count; ++i)
+      if (votes[i] > votes[top]) top = i;
+    best.value[best.count] = value[top];
+    best.votes[best.count++] = votes[top];
+    votes[top] = -1;
+  }
+  return best;
 }
 
-// Starting beliefs, P(0) x 65536 worth a few observations: a brick is too small to learn them from scratch.
-constexpr AdaptiveBit kSurelyOne{2000, 6};
-constexpr AdaptiveBit kProbablyOne{16000, 2};
-constexpr AdaptiveBit kEven{32768, 0};
-constexpr AdaptiveBit kProbablyZero{49000, 2};
-constexpr AdaptiveBit kSurelyZero{63500, 6};
+// Is a neighbour unknown (0), another (1), or what is asked about (2)?
+size_t relation(int32_t near, int32_t asked) { return near < 0 ? 0 : near == asked ? 2 : 1; }
+
+// The questions "is it the best candidate?", "the next?", ... in the light of the surroundings.
+class Questions {
+ public:
+  static constexpr size_t kShares = 16;
+
+  Questions() : shares_(kShares * 4 * 4), mixer_(6, 4 * 4) {
+    for (size_t rank = 0; rank < 4; ++rank) {
+      for (size_t share = 0; share < kShares; ++share) {
+        for (size_t known = 0; known < 4; ++known) {
+          const auto one = static_cast<uint16_t>(rank == 0 ? 12000 + share * 3350
+                                                           : 6000 + share * (rank == 1 ? 3300 : 3000));
+          shares_[(rank * kShares + share) * 4 + known] = {one, 2};
+        }
+      }
+    }
+  }
+
+  template <typename Coder>
+  int ask(Coder& coder, const Candidates& candidates, size_t rank, int32_t votes_left,
+          const std::array<int32_t, kNumNear>& near, size_t surprises, int bit) {
+    const int32_t asked = candidates.value[rank];
+    const size_t share =
+        std::min<size_t>(kShares - 1, static_cast<size_t>(candidates.votes[rank] * 16 / votes_left));
+    const size_t known = std::min<size_t>(3, static_cast<size_t>(candidates.all_votes / 30));
+    const auto is = [&](size_t k) { return relation(near[k], asked); };
+    const size_t nearest = is(0) + 3 * is(1) + 9 * is(2) + 27 * is(3);
+    const size_t second = is(4) + 3 * is(5) + 9 * is(6) + 27 * is(18);
+    const size_t ring = is(7) + 3 * is(8) + 9 * is(9) + 27 * is(10);
+    const size_t outer = is(16) + 3 * is(17);
+    const auto label = static_cast<size_t>(std::min(asked, 31));
+    const std::array<ContextBit*, 6> contexts = {
+        &shares_[(rank * kShares + share) * 4 + known],
+        &inner_[(rank * 81 + nearest) * 81 + second],
+        &names_[(label * 81 + nearest) * 4 + rank],
+        &rings_[(rank * 81 + ring) * 81 + nearest],
+        &surprised_[((rank * kShares + share) * 4 + surprises) * 4 + std::min<size_t>(3, candidates.count)],
+        &outers_[((rank * 9 + outer) * 81 + second) * 9 + nearest % 9]};
+    return mixer_.code(coder, contexts, rank * 4 + share / 4, bit);
+  }
+
+ private:
+  std::vector<ContextBit> shares_;
+  std::vector<ContextBit> inner_ = std::vector<ContextBit>(4 * 81 * 81);
+  std::vector<ContextBit> names_ = std::vector<ContextBit>(32 * 81 * 4);
+  std::vector<ContextBit> rings_ = std::vector<ContextBit>(4 * 81 * 81);
+  std::vector<ContextBit> surprised_ = std::vector<ContextBit>(4 * kShares * 16);
+  std::vector<ContextBit> outers_ = std::vector<ContextBit>(4 * 9 * 81 * 9);
+  BitMixer mixer_;
+};
+
+// A value that no candidate is: the frequent ones are asked about first, those ruled out not at all.
+class NewNames {
+ public:
+  explicit NewNames(int32_t size) : seen_(static_cast<size_t>(size)), order_(static_cast<size_t>(size)) {
+    std::iota(order_.begin(), order_.end(), 0);
+  }
+
+  template <typename Coder>
+  int32_t code(Coder& coder, const Candidates& ruled_out, int32_t value) {
+    const auto out = std::span(ruled_out.value).first(ruled_out.count);
+    size_t left = order_.size() - out.size();
+    size_t asked = 0;
+    for (const int32_t name : order_) {
+      if (std::find(out.begin(), out.end(), name) != out.end()) continue;
+      if (--left == 0) return name;
+      if (coder.bit(hit_[std::min<size_t>(asked++, hit_.size() - 1)], value == name ? 1 : 0) != 0)
+        return name;
+    }
+    return -1;  // every name is ruled out: no Encoder comes here
+  }
+
+  void count(int32_t value) {
+    const auto at = std::find(order_.begin(), order_.end(), value);
+    const int32_t seen = ++seen_[static_cast<size_t>(value)];
+    auto place = at;
+    while (place != order_.begin() && seen_[static_cast<size_t>(*(place - 1))] < seen) --place;
+    std::rotate(place, at, at + 1);
+  }
+
+ private:
+  std::vector<int32_t> seen_;
+  std::vector<int32_t> order_;  // frequent first
+  std::array<AdaptiveBit, 24> hit_;
+};
+
+// A value that no candidate is, but probably near the best one; without candidates, near the value before.
+class NewSteps {
+ public:
+  template <typename Coder>
+  int64_t code(Coder& coder, const Candidates& candidates, int32_t value) {
+    const int32_t from = candidates.count > 0 ? candidates.value[0] : last_;
+    const int32_t least = candidates.count > 0 ? 1 : 0;  // the best candidate itself is ruled out
+    const bool after = coder.bit(after_, value > from ? 1 : 0) != 0;
+    const auto distance = static_cast<uint32_t>(std::max(std::abs(value - from) - least, 0));
+    const int64_t step = int64_t{distance_.code(coder, distance)} + least;
+    return after ? from + step : from - step;
+  }
+
+  void count(int32_t value) { last_ = value; }
+
+ private:
+  int32_t last_ = 0;
+  AdaptiveBit after_;
+  SmallNumber distance_;
+};
 
 }  // namespace
 
-int Occupancy::numCells() const {
-  return std::accumulate(columns_.begin(), columns_.end(), 0,
-                         [](int sum, uint16_t column) { return sum + std::popcount(column); });
-}
-
-std::vector<world::CellIndex> Occupancy::cells(const std::array<int32_t, 3>& brick) const {
-  std::vector<world::CellIndex> cells;
-  for (int x = 0; x < kEdge; ++x)
-    for (int y = 0; y < kEdge; ++y)
-      for (int z = 0; z < kEdge; ++z)
-        if (at(x, y, z)) cells.push_back({brick[0] * kEdge + x, brick[1] * kEdge + y, brick[2] * kEdge + z});
-  return cells;
-}
-
 template <typename Coder>
-Occupancy codeOccupancy(Coder& coder, const Occupancy& occupancy) {
-  Box box = boundsOf(occupancy);
-  for (int* bound : {&box.x0, &box.x1, &box.y0, &box.y1, &box.z0, &box.z1}) {
-    *bound = static_cast<int>(coder.direct(static_cast<uint64_t>(*bound), 4));
-  }
-  // Context of a cell: occupied at (x-1,y), (x,y-1), (x-1,y-1) of its height, at the first two one higher,
-  // and whether its own column has a cell already. Outside the box, the columns at its edge go on.
-  std::vector<AdaptiveBit> models(64);
-  for (size_t context = 0; context < models.size(); ++context) {
-    const int alike = std::popcount(context & 7);
-    models[context] = alike == 3   ? kSurelyOne
-                      : alike == 2 ? kProbablyOne
-                      : alike == 1 ? kEven
-                                   : kProbablyZero;
-    if (alike == 0 && (context & 32) != 0) models[context] = kSurelyZero;
-  }
-  Occupancy result;
-  for (int x = box.x0; x <= box.x1; ++x) {
-    for (int y = box.y0; y <= box.y1; ++y) {
-      bool has_cell = false;
-      for (int z = box.z0; z <= box.z1; ++z) {
-        const auto west = [&](int dy, int dz) { return result.at(x - 1, y + dy, z + dz); };
-        const auto south = [&](int dz) { return result.at(x, y - 1, z + dz); };
-        const bool flat_start = x == box.x0 && y == box.y0 && box.z0 == box.z1;
-        const bool w = x > box.x0 ? west(0, 0) : flat_start || south(0);
-        const bool s = y > box.y0 ? south(0) : w;
-        const bool sw = x > box.x0 && y > box.y0 ? west(-1, 0) : s;
-        const bool w_up = x > box.x0 ? west(0, 1) : south(1);
-        const bool s_up = y > box.y0 ? south(1) : w_up;
-        const unsigned context = (w ? 1u : 0u) | (s ? 2u : 0u) | (sw ? 4u : 0u) | (w_up ? 8u : 0u) |
-                                 (s_up ? 16u : 0u) | (has_cell ? 32u : 0u);
-        if (coder.bit(models[context], occupancy.at(x, y, z) ? 1 : 0) != 0) {
-          result.set(x, y, z);
-          has_cell = true;
-        }
-      }
-    }
-  }
-  return result;
-}
-
-std::vector<std::array<int16_t, 4>> neighboursOf(const Occupancy& occupancy) {
-  std::vector<std::array<int16_t, 4>> all;
-  std::array<int16_t, kEdge * kEdge> start{};  // position of each column's lowest cell
-  const auto nearest = [&](int x, int y, int z) -> int16_t {
-    if (x < 0 || y < 0 || y >= kEdge || occupancy.column(x, y) == 0) return -1;
-    const uint16_t column = occupancy.column(x, y);
-    for (int distance = 0;; ++distance) {  // the column is not empty: ends
-      for (const int height : {z - distance, z + distance}) {
-        if (!occupancy.at(x, y, height)) continue;
-        const int lower = std::popcount(static_cast<uint16_t>(column & ((1u << height) - 1)));
-        return static_cast<int16_t>(start[static_cast<size_t>(x * kEdge + y)] + lower);
-      }
-    }
-  };
-  for (int x = 0; x < kEdge; ++x) {
-    for (int y = 0; y < kEdge; ++y) {
-      start[static_cast<size_t>(x * kEdge + y)] = static_cast<int16_t>(all.size());
-      for (int z = 0; z < kEdge; ++z) {
-        if (!occupancy.at(x, y, z)) continue;
-        const auto below =
-            static_cast<int16_t>(occupancy.at(x, y, z - 1) ? static_cast<int>(all.size()) - 1 : -1);
-        std::array<int16_t, 4> found{-1, -1, -1, -1};
-        size_t count = 0;
-        for (const int16_t candidate : {below, nearest(x, y - 1, z), nearest(x - 1, y, z),
-                                        nearest(x - 1, y - 1, z), nearest(x - 1, y + 1, z)}) {
-          if (candidate >= 0 && count < found.size()) found[count++] = candidate;
-        }
-        for (; count < found.size(); ++count) found[count] = found[0];
-        all.push_back(found);
-      }
-    }
-  }
-  return all;
-}
-
-template <typename Coder>
-bool codeIndices(Coder& coder, std::span<const std::array<int16_t, 4>> neighbours, int32_t size, Scale scale,
+bool codeIndices(Coder& coder, const CellField& field, int32_t size, Scale scale,
                  std::vector<int32_t>& indices) {
-  indices.resize(neighbours.size());
+  const std::vector<NearCells>& all_near = field.near();
+  indices.resize(all_near.size());
   if (size == 1) {
     std::fill(indices.begin(), indices.end(), 0);
     return true;
   }
-  // "Is it the first, second, ... of the neighbours' values?", in the light of which of them agree.
-  std::array<std::array<AdaptiveBit, 4>, 64> hit;
-  hit.fill({kProbablyOne, kEven, kEven, kEven});
-  hit[63] = {kSurelyOne, kEven, kEven, kEven};
-  BitTree names(static_cast<int>(std::bit_width(static_cast<uint32_t>(size - 1))));
-  SmallNumber distance;
-  AdaptiveBit later;
-  for (size_t i = 0; i < neighbours.size(); ++i) {
+  Questions questions;
+  NewNames names(size);
+  NewSteps steps;
+  std::vector<uint8_t> surprise(indices.size());  // not the best candidate
+  for (size_t i = 0; i < indices.size(); ++i) {
     if (coder.overrun()) return false;
-    int32_t value = indices[i];
+    std::array<int32_t, kNumNear> near{};
+    for (size_t k = 0; k < kNumNear; ++k)
+      near[k] = all_near[i][k] < 0 ? -1 : indices[static_cast<size_t>(all_near[i][k])];
+    const auto surprised = [&](size_t k) {
+      return all_near[i][k] < 0 ? size_t{0} : size_t{surprise[static_cast<size_t>(all_near[i][k])]};
+    };
+    const Candidates candidates = candidatesOf(near);
+    int64_t value = indices[i];
     bool known = false;
-    std::array<int32_t, 4> near{};
-    const bool alone = neighbours[i][0] < 0;
-    if (!alone) {
-      for (size_t k = 0; k < 4; ++k) near[k] = indices[static_cast<size_t>(neighbours[i][k])];
-      const auto same = [&](size_t a, size_t b) { return near[a] == near[b] ? 1u : 0u; };
-      const unsigned pattern = same(0, 1) | same(0, 2) << 1 | same(0, 3) << 2 | same(1, 2) << 3 |
-                               same(1, 3) << 4 | same(2, 3) << 5;
-      for (size_t k = 0; k < 4 && !known; ++k) {
-        const auto before = std::span(near).first(k);
-        if (std::find(before.begin(), before.end(), near[k]) != before.end()) continue;  // asked already
-        if (coder.bit(hit[pattern][k], value == near[k] ? 1 : 0) != 0) {
-          value = near[k];
-          known = true;
-        }
-      }
+    int32_t votes_left = candidates.all_votes;
+    const size_t surprises = surprised(0) + 2 * surprised(1);
+    for (size_t rank = 0; rank < candidates.count && !known; ++rank) {
+      known = questions.ask(coder, candidates, rank, votes_left, near, surprises,
+                            value == candidates.value[rank] ? 1 : 0) != 0;
+      if (known) value = candidates.value[rank];
+      surprise[i] = rank > 0 || !known ? 1 : 0;
+      votes_left = std::max(1, votes_left - candidates.votes[rank]);
     }
-    if (!known && (scale == Scale::kNames || alone)) {
-      value = static_cast<int32_t>(names.code(coder, static_cast<uint32_t>(value)));
-    } else if (!known) {
-      const bool after = coder.bit(later, value > near[0] ? 1 : 0) != 0;
-      const uint32_t distance_coded =
-          distance.code(coder, static_cast<uint32_t>(std::max(std::abs(value - near[0]) - 1, 0)));
-      if (distance_coded >= static_cast<uint32_t>(size)) return false;
-      const auto step = static_cast<int32_t>(distance_coded);
-      value = after ? near[0] + 1 + step : near[0] - 1 - step;
+    if (!known) {
+      value = scale == Scale::kNames ? names.code(coder, candidates, static_cast<int32_t>(value))
+                                     : steps.code(coder, candidates, static_cast<int32_t>(value));
     }
     if (value < 0 || value >= size) return false;
-    indices[i] = value;
+    indices[i] = static_cast<int32_t>(value);
+    if (scale == Scale::kNames) {
+      names.count(indices[i]);
+    } else {
+      steps.count(indices[i]);
+    }
   }
   return true;
 }
 
 template <typename Coder>
-bool codeLevels(Coder& coder, std::span<const std::array<int16_t, 4>> neighbours, int32_t levels,
-                std::vector<int32_t>& values) {
-  values.resize(neighbours.size());
-  std::array<SmallNumber, 5> residual;  // by how much the neighbours differ
-  for (size_t i = 0; i < neighbours.size(); ++i) {
+bool codeLevels(Coder& coder, const CellField& field, int32_t levels, std::vector<int32_t>& values) {
+  values.resize(field.near().size());
+  std::array<SmallNumber, 6> residual;  // by how much the neighbours differ
+  for (size_t i = 0; i < values.size(); ++i) {
     if (coder.overrun()) return false;
-    int32_t expected = levels / 2;
-    size_t context = 4;
-    if (neighbours[i][0] >= 0) {
-      const auto near = [&](size_t k) { return values[static_cast<size_t>(neighbours[i][k])]; };
-      expected = (2 * near(0) + 2 * near(1) + near(2) + near(3) + 3) / 6;
-      const int32_t spread = std::abs(near(0) - near(1)) + std::abs(near(1) - near(2));
-      context = spread == 0 ? 0 : spread < 4 ? 1 : spread < 12 ? 2 : 3;
+    int32_t sum = 0, weight = 0, least = levels, most = -1;
+    for (size_t k = 0; k < kNumNear; ++k) {
+      const int32_t place = field.near()[i][k];
+      if (place < 0) continue;
+      const int32_t level = values[static_cast<size_t>(place)];
+      const int32_t own = k < kNearColumns.size() ? kNearColumns[k].weight : kBelowWeight;
+      sum += own * level;
+      weight += own;
+      if (k > 3) continue;
+      least = std::min(least, level);
+      most = std::max(most, level);
     }
+    const int32_t expected = weight == 0 ? levels / 2 : (2 * sum + weight) / (2 * weight);
+    const int32_t spread = (most - least) * 32 / levels;
+    const size_t context = weight == 0   ? 5
+                           : most < 0    ? 4
+                           : spread == 0 ? 0
+                           : spread < 3  ? 1
+                           : spread < 9  ? 2
+                                         : 3;
     const uint32_t coded = residual[context].code(coder, zigzag(values[i] - expected));
     if (coded > static_cast<uint32_t>(2 * levels)) return false;
     values[i] = expected + unzigzag(coded);
@@ -236,14 +264,10 @@ bool codeTimes(Coder& coder, int64_t limit, size_t max_size, std::vector<int64_t
   return true;
 }
 
-template Occupancy codeOccupancy(Encoder&, const Occupancy&);
-template Occupancy codeOccupancy(Decoder&, const Occupancy&);
-template bool codeIndices(Encoder&, std::span<const std::array<int16_t, 4>>, int32_t, Scale,
-                          std::vector<int32_t>&);
-template bool codeIndices(Decoder&, std::span<const std::array<int16_t, 4>>, int32_t, Scale,
-                          std::vector<int32_t>&);
-template bool codeLevels(Encoder&, std::span<const std::array<int16_t, 4>>, int32_t, std::vector<int32_t>&);
-template bool codeLevels(Decoder&, std::span<const std::array<int16_t, 4>>, int32_t, std::vector<int32_t>&);
+template bool codeIndices(Encoder&, const CellField&, int32_t, Scale, std::vector<int32_t>&);
+template bool codeIndices(Decoder&, const CellField&, int32_t, Scale, std::vector<int32_t>&);
+template bool codeLevels(Encoder&, const CellField&, int32_t, std::vector<int32_t>&);
+template bool codeLevels(Decoder&, const CellField&, int32_t, std::vector<int32_t>&);
 template bool codePalette(Encoder&, int64_t, size_t, std::vector<int64_t>&);
 template bool codePalette(Decoder&, int64_t, size_t, std::vector<int64_t>&);
 template bool codeTimes(Encoder&, int64_t, size_t, std::vector<int64_t>&);

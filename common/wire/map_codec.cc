@@ -54,17 +54,15 @@ struct Columns {
 };
 
 template <typename Coder>
-bool codeColumns(Coder& coder, const Occupancy& occupancy, Columns& columns) {
-  const auto neighbours = neighboursOf(occupancy);
-  const auto size = [](const Palette& palette) { return static_cast<int32_t>(palette.values.size()); };
+bool codeColumns(Coder& coder, const CellField& field, Columns& columns) {
   auto& [labels, robots, times, steps] = columns;
   return codePalette(coder, kMaxLabel, kMaxBrickCells, labels.values) &&
-         codeIndices(coder, neighbours, size(labels), Scale::kNames, labels.indices) &&
+         codeIndices(coder, field, labels.size(), Scale::kNames, labels.indices) &&
          codePalette(coder, kMaxRobotNumber, kMaxBrickCells, robots.values) &&
-         codeIndices(coder, neighbours, size(robots), Scale::kNames, robots.indices) &&
+         codeIndices(coder, field, robots.size(), Scale::kNames, robots.indices) &&
          codeTimes(coder, kMaxTimeUs, kMaxBrickCells, times.values) &&
-         codeIndices(coder, neighbours, size(times), Scale::kOrder, times.indices) &&
-         codeLevels(coder, neighbours, kCertaintySteps + 1, steps) && !coder.overrun();
+         codeIndices(coder, field, times.size(), Scale::kOrder, times.indices) &&
+         codeLevels(coder, field, kCertaintySteps + 1, steps) && !coder.overrun();
 }
 
 Bytes encodeValid(const MapChunk& chunk, int32_t mission, world::Timestamp time) {
@@ -80,13 +78,14 @@ Bytes encodeValid(const MapChunk& chunk, int32_t mission, world::Timestamp time)
   message.fused_cells = static_cast<int16_t>(chunk.cells.size());
   Encoder encoder;
   if (!chunk.cells.empty()) {
-    const Occupancy occupancy = codeOccupancy(encoder, Occupancy::of(chunk.cells));
-    Columns columns{Palette::of(chunk.cells, [](const auto& c) -> int64_t { return number(c.label); }),
-                    Palette::of(chunk.cells, [](const auto& c) -> int64_t { return number(c.robot); }),
-                    Palette::of(chunk.cells, [](const auto& c) { return c.seen.us; }),
+    CellField field;
+    GeometryCoder().code(encoder, chunk.brick, Occupancy::of(chunk.cells), field);
+    Columns columns{Palette::of(chunk.cells, [](const GlobalCell& c) -> int64_t { return number(c.label); }),
+                    Palette::of(chunk.cells, [](const GlobalCell& c) -> int64_t { return number(c.robot); }),
+                    Palette::of(chunk.cells, [](const GlobalCell& c) { return c.seen.us; }),
                     {}};
     for (const auto& c : chunk.cells) columns.steps.push_back(certaintySteps(c.certainty));
-    SHOAL_DEMAND(codeColumns(encoder, occupancy, columns));
+    SHOAL_DEMAND(codeColumns(encoder, field, columns));
   }
   return pack(std::move(message), encoder.finish());
 }
@@ -94,19 +93,16 @@ Bytes encodeValid(const MapChunk& chunk, int32_t mission, world::Timestamp time)
 bool decodeCells(std::span<const uint8_t> payload, int32_t num_cells, MapChunk& chunk) {
   if (num_cells == 0) return true;
   Decoder decoder(payload);
-  const Occupancy occupancy = codeOccupancy(decoder, {});
-  if (occupancy.numCells() != num_cells) return false;
+  CellField field;
+  GeometryCoder().code(decoder, chunk.brick, {}, field);
+  if (std::ssize(field.cells()) != num_cells) return false;
   Columns columns;
-  if (!codeColumns(decoder, occupancy, columns)) return false;
-  const auto cells = occupancy.cells(chunk.brick);
-  for (size_t i = 0; i < cells.size(); ++i) {
-    const auto value = [i](const Palette& palette) {
-      return palette.values[static_cast<size_t>(palette.indices[i])];
-    };
-    chunk.cells.push_back({cells[i],
-                           world::GlobalLabel{static_cast<int32_t>(value(columns.labels))},
-                           world::RobotId{static_cast<int32_t>(value(columns.robots))},
-                           {value(columns.times)},
+  if (!codeColumns(decoder, field, columns)) return false;
+  for (size_t i = 0; i < field.cells().size(); ++i) {
+    chunk.cells.push_back({field.cells()[i],
+                           world::GlobalLabel{static_cast<int32_t>(columns.labels.at(i))},
+                           world::RobotId{static_cast<int32_t>(columns.robots.at(i))},
+                           {columns.times.at(i)},
                            static_cast<float>(columns.steps[i]) / static_cast<float>(kCertaintySteps)});
   }
   return true;

@@ -75,26 +75,29 @@ json fields(const mapping::Edit& edit) {
   return j;
 }
 
-json fields(const mapping::Piece& piece) {
-  if (const auto* edit = std::get_if<mapping::Edit>(&piece.content)) return fields(*edit);
+json fields(const mapping::Piece& piece, const mapping::TopicPart& topic) {
   json j{{"part", piece.part},
          {"num_parts", piece.num_parts},
          {"robot", number(piece.key.robot)},
          {"epoch", piece.version.epoch},
-         {"observation", piece.version.observation}};
-  if (const auto* topic = std::get_if<mapping::TopicPart>(&piece.content)) {
-    j["topic"] = piece.key.index[0];
-    j["num_words"] = topic->words.size();
-    j["created_us"] = topic->created.us;
-    j["weight"] = topic->weight;
-    j["group_sizes"] = topic->group_sizes;
-    j["words"] = json::array();
-    for (const auto& [word, count] : topic->words) j["words"].push_back(json::array({word, count}));
-    return j;
-  }
-  j["brick_x"] = piece.key.index[0];
-  j["brick_y"] = piece.key.index[1];
-  j["brick_z"] = piece.key.index[2];
+         {"observation", piece.version.observation},
+         {"topic", piece.key.index[0]},
+         {"num_words", topic.words.size()},
+         {"created_us", topic.created.us},
+         {"weight", topic.weight},
+         {"group_sizes", topic.group_sizes},
+         {"words", json::array()}};
+  for (const auto& [word, count] : topic.words) j["words"].push_back(json::array({word, count}));
+  return j;
+}
+
+json brickFields(const mapping::Piece& piece) {
+  json j{{"part", piece.part},
+         {"num_parts", piece.num_parts},
+         {"observation", piece.version.observation},
+         {"brick_x", piece.key.index[0]},
+         {"brick_y", piece.key.index[1]},
+         {"brick_z", piece.key.index[2]}};
   if (const auto* brick = std::get_if<mapping::BrickPart>(&piece.content)) {
     for (const auto& c : brick->cells)
       j["cells"].push_back(json::array({arrayOf(c.cell), number(c.topic), c.seen.us}));
@@ -102,6 +105,16 @@ json fields(const mapping::Piece& piece) {
     for (const auto& c : std::get<mapping::CertaintyPart>(piece.content).cells)
       j["certainties"].push_back(json::array({arrayOf(c.cell), c.steps}));
   }
+  return j;
+}
+
+json fields(const std::vector<mapping::Piece>& pieces) {
+  const mapping::Piece& first = pieces.front();
+  if (const auto* edit = std::get_if<mapping::Edit>(&first.content)) return fields(*edit);
+  if (const auto* topic = std::get_if<mapping::TopicPart>(&first.content)) return fields(first, *topic);
+  json j{{"robot", number(first.key.robot)}, {"epoch", first.version.epoch}};
+  json& bricks = j[std::holds_alternative<mapping::BrickPart>(first.content) ? "bricks" : "certain_bricks"];
+  for (const mapping::Piece& piece : pieces) bricks.push_back(brickFields(piece));
   return j;
 }
 
@@ -169,7 +182,7 @@ json messageJson(const std::string& channel, std::span<const uint8_t> bytes) {
     case MessageKind::kBrick:
     case MessageKind::kCertainty:
     case MessageKind::kEdit:
-      return told(decodePiece(header->kind, bytes));
+      return told(decodePieces(header->kind, bytes));
     case MessageKind::kMatches:
       return told(decodeMatches(bytes));
     case MessageKind::kLabels:

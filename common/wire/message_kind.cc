@@ -3,8 +3,8 @@
 
 #include "shoal/wire/checksum.h"
 
-#include <shoal/brick_t.hpp>
-#include <shoal/certainty_t.hpp>
+#include <shoal/bricks_t.hpp>
+#include <shoal/certainties_t.hpp>
 #include <shoal/edit_t.hpp>
 #include <shoal/heartbeat_t.hpp>
 #include <shoal/labels_t.hpp>
@@ -39,9 +39,9 @@ size_t fixedBytesOf(MessageKind kind) {
     case MessageKind::kTopics:
       return fixedBytes<topics_t>();
     case MessageKind::kBrick:
-      return fixedBytes<brick_t>();
+      return fixedBytes<bricks_t>();
     case MessageKind::kCertainty:
-      return fixedBytes<certainty_t>();
+      return fixedBytes<certainties_t>();
     case MessageKind::kMatches:
       return fixedBytes<matches_t>();
     case MessageKind::kLabels:
@@ -64,9 +64,9 @@ int64_t fingerprintOf(MessageKind kind) {
     case MessageKind::kTopics:
       return topics_t::getHash();
     case MessageKind::kBrick:
-      return brick_t::getHash();
+      return bricks_t::getHash();
     case MessageKind::kCertainty:
-      return certainty_t::getHash();
+      return certainties_t::getHash();
     case MessageKind::kMatches:
       return matches_t::getHash();
     case MessageKind::kLabels:

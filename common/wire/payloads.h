@@ -4,9 +4,9 @@
 // For this room's .cc files: the payloads of pieces. docs/wire.md describes them bit by bit. The contents
 // encoded are valid (piece_codec checks); what is decoded is checked by piece_codec, except where noted.
 
-#include <array>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "shoal/mapping/piece.h"
 #include "shoal/wire/bytes.h"
@@ -14,14 +14,17 @@
 namespace shoal::wire {
 
 Bytes encodeTopic(const mapping::TopicPart& topic);
-Bytes encodeBrick(const mapping::BrickPart& brick);
-Bytes encodeCertainty(const mapping::CertaintyPart& certainty);
+
+/// Bricks of one robot and epoch, ascending by index, each index once, at most kMaxBricksPerMessage with
+/// kMaxCellsPerMessage cells in all; `pieces` point to BrickPart, or all to CertaintyPart.
+Bytes encodeBricks(std::span<const mapping::Piece* const> pieces);
+Bytes encodeCertainties(std::span<const mapping::Piece* const> pieces);
 
 /// All return false when the stream ends early or holds what cannot be. Memory: at most the caps of limits.h.
 bool decodeTopic(std::span<const uint8_t> payload, int32_t num_words, mapping::TopicPart& topic);
-bool decodeBrick(std::span<const uint8_t> payload, const std::array<int32_t, 3>& index, int32_t num_cells,
-                 mapping::BrickPart& brick);
-bool decodeCertainty(std::span<const uint8_t> payload, const std::array<int32_t, 3>& index, int32_t num_cells,
-                     mapping::CertaintyPart& certainty);
+
+/// Fill in index, version's observation, part, num_parts and content of as many pieces as `pieces` has.
+bool decodeBricks(std::span<const uint8_t> payload, std::span<mapping::Piece> pieces);
+bool decodeCertainties(std::span<const uint8_t> payload, std::span<mapping::Piece> pieces);
 
 }  // namespace shoal::wire

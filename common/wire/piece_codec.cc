@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <numeric>
-#include <shoal/brick_t.hpp>
-#include <shoal/certainty_t.hpp>
+#include <shoal/bricks_t.hpp>
+#include <shoal/certainties_t.hpp>
 #include <shoal/topics_t.hpp>
 #include <stdexcept>
 
@@ -74,10 +74,9 @@ std::string faultOf(const CertaintyPart& certainty, const mapping::PieceKey& key
   return faultOfCells(certainty.cells, key.index);
 }
 
-// What the three types have in common.
-template <typename Message>
-Message frame(const Piece& piece, int32_t mission, world::Timestamp time) {
-  Message message{};
+Bytes encodeTopicMessage(const Piece& piece, int32_t mission, world::Timestamp time) {
+  const auto& topic = std::get<TopicPart>(piece.content);
+  topics_t message{};
   message.utime = time.us;
   message.mission = mission;
   message.part = static_cast<uint8_t>(piece.part);
@@ -85,76 +84,98 @@ Message frame(const Piece& piece, int32_t mission, world::Timestamp time) {
   message.robot = static_cast<int16_t>(number(piece.key.robot));
   message.epoch = piece.version.epoch;
   message.observation = piece.version.observation;
+  message.topic = static_cast<int16_t>(piece.key.index[0]);
+  message.num_words = static_cast<int32_t>(topic.words.size());
+  return pack(std::move(message), encodeTopic(topic));
+}
+
+template <typename Message>
+Message frameOfBricks(std::span<const Piece* const> pieces, int16_t Message::*count, int32_t mission,
+                      world::Timestamp time) {
+  Message message{};
+  message.utime = time.us;
+  message.mission = mission;
+  message.robot = static_cast<int16_t>(number(pieces.front()->key.robot));
+  message.epoch = pieces.front()->version.epoch;
+  message.*count = static_cast<int16_t>(pieces.size());
   return message;
 }
 
-template <typename Message>
-void setBrick(Message& message, const Piece& piece) {
-  message.brick_x = piece.key.index[0];
-  message.brick_y = piece.key.index[1];
-  message.brick_z = piece.key.index[2];
+// Of any size. The pieces are without fault, and can travel together.
+Bytes encodeValid(std::span<const Piece* const> pieces, int32_t mission, world::Timestamp time) {
+  const Piece& first = *pieces.front();
+  if (std::holds_alternative<TopicPart>(first.content)) return encodeTopicMessage(first, mission, time);
+  if (const auto* edit = std::get_if<mapping::Edit>(&first.content)) return encodeEdit(*edit, mission, time);
+  if (std::holds_alternative<BrickPart>(first.content))
+    return pack(frameOfBricks(pieces, &bricks_t::bricks, mission, time), encodeBricks(pieces));
+  return pack(frameOfBricks(pieces, &certainties_t::certain_bricks, mission, time),
+              encodeCertainties(pieces));
 }
 
-// Of any size. The piece is without fault.
 Bytes encodeValid(const Piece& piece, int32_t mission, world::Timestamp time) {
-  if (const auto* topic = std::get_if<TopicPart>(&piece.content)) {
-    auto message = frame<topics_t>(piece, mission, time);
-    message.topic = static_cast<int16_t>(piece.key.index[0]);
-    message.num_words = static_cast<int32_t>(topic->words.size());
-    return pack(std::move(message), encodeTopic(*topic));
-  }
-  if (const auto* brick = std::get_if<BrickPart>(&piece.content)) {
-    auto message = frame<brick_t>(piece, mission, time);
-    setBrick(message, piece);
-    message.cells = static_cast<int16_t>(brick->cells.size());
-    return pack(std::move(message), encodeBrick(*brick));
-  }
-  if (const auto* edit = std::get_if<mapping::Edit>(&piece.content)) return encodeEdit(*edit, mission, time);
-  const auto& certainty = std::get<CertaintyPart>(piece.content);
-  auto message = frame<certainty_t>(piece, mission, time);
-  setBrick(message, piece);
-  message.certainties = static_cast<int16_t>(certainty.cells.size());
-  return pack(std::move(message), encodeCertainty(certainty));
+  const Piece* const one = &piece;
+  return encodeValid(std::span(&one, 1), mission, time);
 }
 
-template <typename Message>
-Piece unframe(const Message& message, PieceKind kind) {
-  Piece piece;
-  piece.key.robot = world::RobotId{message.robot};
-  piece.key.kind = kind;
-  piece.version = {message.epoch, message.observation};
-  piece.part = message.part;
-  piece.num_parts = message.num_parts;
-  return piece;
-}
-
-Result<Piece> decodeTopics(std::span<const uint8_t> bytes) {
+Result<std::vector<Piece>> decodeTopics(std::span<const uint8_t> bytes) {
   const auto message = unpack<topics_t>(bytes);
   if (!message) return message.error();
   if (message->num_words < 0 || message->num_words > kMaxWordsPerPart) return DecodeError::kBadField;
-  Piece piece = unframe(*message, PieceKind::kTopic);
-  piece.key.index = {message->topic, 0, 0};
+  Piece piece;
+  piece.key = {world::RobotId{message->robot}, PieceKind::kTopic, {message->topic, 0, 0}};
+  piece.version = {message->epoch, message->observation};
+  piece.part = message->part;
+  piece.num_parts = message->num_parts;
   TopicPart topic;
   if (!decodeTopic(message->payload, message->num_words, topic)) return DecodeError::kBadPayload;
   piece.content = std::move(topic);
-  return piece;
+  return std::vector{std::move(piece)};
 }
 
-template <typename Message, typename Part>
-Result<Piece> decodeCells(std::span<const uint8_t> bytes, PieceKind kind, int16_t Message::*count,
-                          bool (*decode)(std::span<const uint8_t>, const std::array<int32_t, 3>&, int32_t,
-                                         Part&)) {
+template <typename Message>
+Result<std::vector<Piece>> decodeCells(std::span<const uint8_t> bytes, PieceKind kind,
+                                       int16_t Message::*count,
+                                       bool (*decode)(std::span<const uint8_t>, std::span<Piece>)) {
   const auto message = unpack<Message>(bytes);
   if (!message) return message.error();
-  const int32_t cells = (*message).*count;
-  if (cells < 1 || cells > kMaxBrickCells) return DecodeError::kBadField;
-  Piece piece = unframe(*message, kind);
-  piece.key.index = {message->brick_x, message->brick_y, message->brick_z};
-  if (!isBrick(piece.key.index)) return DecodeError::kBadField;
-  Part part;
-  if (!decode(message->payload, piece.key.index, cells, part)) return DecodeError::kBadPayload;
-  piece.content = std::move(part);
-  return piece;
+  const int32_t bricks = (*message).*count;
+  if (bricks < 1 || bricks > static_cast<int32_t>(kMaxBricksPerMessage)) return DecodeError::kBadField;
+  std::vector<Piece> pieces(static_cast<size_t>(bricks));
+  for (Piece& piece : pieces) {
+    piece.key.robot = world::RobotId{message->robot};
+    piece.key.kind = kind;
+    piece.version.epoch = message->epoch;
+  }
+  if (!decode(message->payload, pieces)) return DecodeError::kBadPayload;
+  return pieces;
+}
+
+Result<std::vector<Piece>> decodeEdits(std::span<const uint8_t> bytes) {
+  auto edit = decodeEdit(bytes);
+  if (!edit) return edit.error();
+  return std::vector{std::move(*edit)};
+}
+
+size_t numCells(const Piece& piece) {
+  if (const auto* brick = std::get_if<BrickPart>(&piece.content)) return brick->cells.size();
+  if (const auto* certainty = std::get_if<CertaintyPart>(&piece.content)) return certainty->cells.size();
+  return 0;
+}
+
+// Why pieces in order of their keys cannot share a message; empty when they can.
+std::string faultTogether(std::span<const Piece* const> pieces) {
+  if (pieces.size() > kMaxBricksPerMessage) return "more than 1024";
+  for (size_t i = 0; i < pieces.size(); ++i) {
+    const Piece& first = *pieces.front();
+    const Piece& piece = *pieces[i];
+    if (piece.key.kind != PieceKind::kBrick && piece.key.kind != PieceKind::kCertainty)
+      return "only bricks and certainties travel together";
+    if (piece.key.kind != first.key.kind || piece.key.robot != first.key.robot ||
+        piece.version.epoch != first.version.epoch)
+      return "of several kinds, robots or epochs";
+    if (i > 0 && pieces[i - 1]->key == piece.key) return "two of one brick";
+  }
+  return {};
 }
 
 // The part of `whole` whose elements are those of `words` in [begin, end), words ascending again.
@@ -195,14 +216,56 @@ std::string fault(const Piece& piece) {
 }
 
 Bytes encode(const Piece& piece, int32_t mission, world::Timestamp time) {
+  return encode(std::span(&piece, 1), mission, time);
+}
+
+Bytes encode(std::span<const Piece> pieces, int32_t mission, world::Timestamp time) {
   if (!isTime(time))
     throw std::invalid_argument("time of sending out of range: " + std::to_string(time.us) + " us");
-  if (const std::string why = fault(piece); !why.empty()) throw std::invalid_argument("piece: " + why);
-  const auto* topic = std::get_if<TopicPart>(&piece.content);
+  if (pieces.empty()) throw std::invalid_argument("a message holds at least one piece");
+  std::vector<const Piece*> sorted;
+  size_t cells = 0;
+  for (const Piece& piece : pieces) {
+    if (const std::string why = fault(piece); !why.empty()) throw std::invalid_argument("piece: " + why);
+    cells += numCells(piece);
+    sorted.push_back(&piece);
+  }
+  if (pieces.size() > 1) {
+    std::ranges::sort(sorted, {}, [](const Piece* piece) { return piece->key; });
+    if (const std::string why = faultTogether(sorted); !why.empty())
+      throw std::invalid_argument("pieces: " + why);
+    if (cells > kMaxCellsPerMessage) throw std::invalid_argument("pieces: more than 32768 cells together");
+  }
+  const auto* topic = std::get_if<TopicPart>(&pieces.front().content);
   if (topic != nullptr && topic->words.size() > kMaxWordsPerPart) {
     throw std::invalid_argument("piece: more than 65536 words in a part: cut it to fit first");
   }
-  return checkedSize(encodeValid(piece, mission, time), "piece");
+  return checkedSize(encodeValid(sorted, mission, time), "piece");
+}
+
+std::optional<Bytes> encodeTogether(std::span<const std::span<const uint8_t>> messages, size_t max_payload) {
+  if (messages.empty()) return std::nullopt;
+  const auto header = peek(messages.front());
+  if (!header || (header->kind != MessageKind::kBrick && header->kind != MessageKind::kCertainty))
+    return std::nullopt;
+  std::vector<Piece> all;
+  for (const auto& bytes : messages) {
+    auto pieces = decodePieces(header->kind, bytes);
+    if (!pieces) return std::nullopt;
+    std::ranges::move(*pieces, std::back_inserter(all));
+  }
+  std::vector<const Piece*> sorted;
+  size_t cells = 0;
+  for (const Piece& piece : all) {
+    cells += numCells(piece);
+    sorted.push_back(&piece);
+  }
+  if (cells > kMaxCellsPerMessage) return std::nullopt;
+  std::ranges::sort(sorted, {}, [](const Piece* piece) { return piece->key; });
+  if (!faultTogether(sorted).empty()) return std::nullopt;
+  Bytes bytes = encodeValid(sorted, header->mission, {});
+  if (bytes.size() > max_payload) return std::nullopt;
+  return bytes;
 }
 
 std::vector<Piece> cutToFit(const Piece& whole, size_t max_payload) {
@@ -216,7 +279,12 @@ std::vector<Piece> cutToFit(const Piece& whole, size_t max_payload) {
       return piece;
     };
     const auto runs = cutRuns(count, max_run, [&](size_t begin, size_t end) {
-      return encodeValid(make(begin, end), 0, {}).size() <= max_payload;
+      Piece piece = make(begin, end);
+      if (end - begin == count) return encodeValid(piece, 0, {}).size() <= max_payload;
+      piece.num_parts =
+          kMaxParts;  // numbers that are not known yet: a stream may end a byte later with others
+      piece.part = kMaxParts - 1;
+      return encodeValid(piece, 0, {}).size() + 1 <= max_payload;
     });
     if (runs.size() > static_cast<size_t>(kMaxParts)) {
       throw std::invalid_argument("piece: " + std::to_string(runs.size()) + " parts of at most " +
@@ -253,27 +321,31 @@ std::vector<Piece> cutToFit(const Piece& whole, size_t max_payload) {
   return cut(run(certainty), certainty.cells.size(), kMaxBrickCells);
 }
 
-Result<Piece> decodePiece(MessageKind kind, std::span<const uint8_t> bytes) {
-  auto decoded = [&]() -> Result<Piece> {
+Result<std::vector<Piece>> decodePieces(MessageKind kind, std::span<const uint8_t> bytes) {
+  auto decoded = [&]() -> Result<std::vector<Piece>> {
     switch (kind) {
       case MessageKind::kTopics:
         return decodeTopics(bytes);
       case MessageKind::kBrick:
-        return decodeCells<brick_t, BrickPart>(bytes, PieceKind::kBrick, &brick_t::cells, decodeBrick);
+        return decodeCells<bricks_t>(bytes, PieceKind::kBrick, &bricks_t::bricks, decodeBricks);
       case MessageKind::kCertainty:
-        return decodeCells<certainty_t, CertaintyPart>(bytes, PieceKind::kCertainty,
-                                                       &certainty_t::certainties, decodeCertainty);
+        return decodeCells<certainties_t>(bytes, PieceKind::kCertainty, &certainties_t::certain_bricks,
+                                          decodeCertainties);
       case MessageKind::kEdit:
-        return decodeEdit(bytes);
+        return decodeEdits(bytes);
       default:
         return DecodeError::kWrongType;
     }
   }();
   if (!decoded) return decoded;
-  if (!fault(*decoded).empty()) return DecodeError::kBadField;
+  std::vector<const Piece*> pieces;
+  for (const Piece& piece : *decoded) {
+    if (!fault(piece).empty()) return DecodeError::kBadField;
+    pieces.push_back(&piece);
+  }
   const auto header = peek(bytes);
   if (!header) return header.error();
-  const Bytes again = encodeValid(*decoded, header->mission, header->time);
+  const Bytes again = encodeValid(pieces, header->mission, header->time);
   if (!std::equal(again.begin(), again.end(), bytes.begin(), bytes.end())) return DecodeError::kNotCanonical;
   return decoded;
 }

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,7 +22,7 @@ MessageKind kindOf(const mapping::Piece& piece);
 /// mapping/piece.h and the caps of limits.h. Costs a pass over the piece.
 std::string fault(const mapping::Piece& piece);
 
-/// A piece as a message of type topics_t, brick_t, certainty_t or edit_t. Lossless; equal pieces (mission,
+/// A piece as a message of type topics_t, bricks_t, certainties_t or edit_t. Lossless; equal pieces (mission,
 /// time) are equal bytes.
 ///
 /// @param mission  Id of the mission.
@@ -29,6 +30,15 @@ std::string fault(const mapping::Piece& piece);
 /// @throws std::invalid_argument naming the fault() of the piece, or its size when it is above
 ///         kMaxMessageBytes: cutToFit() first.
 Bytes encode(const mapping::Piece& piece, int32_t mission, world::Timestamp time);
+
+/// Bricks, or certainties, of one robot and epoch in one message, in any order, no brick twice: far fewer
+/// bytes than one by one, since they share header, palette and models.
+/// @throws std::invalid_argument as above, or saying why they cannot share a message.
+Bytes encode(std::span<const mapping::Piece> pieces, int32_t mission, world::Timestamp time);
+
+/// What several messages say in one; nothing when they cannot share a message or it would be longer than
+/// `max_payload`. The time of sending becomes 0. Cost: decodes all and encodes once.
+std::optional<Bytes> encodeTogether(std::span<const std::span<const uint8_t>> messages, size_t max_payload);
 
 /// Cuts a whole piece (part 0 of 1, of any size) into parts of at most `max_payload` encoded bytes.
 ///
@@ -42,10 +52,11 @@ Bytes encode(const mapping::Piece& piece, int32_t mission, world::Timestamp time
 ///         take 226 parts.
 std::vector<mapping::Piece> cutToFit(const mapping::Piece& whole, size_t max_payload);
 
-/// The inverse of encode(). Whatever the bytes are, it returns, within the memory of one valid piece, and
-/// what it returns encodes to the very same bytes.
+/// The inverse of encode(). Whatever the bytes are, it returns, within the memory of one message of valid
+/// pieces, and what it returns encodes to the very same bytes.
 ///
 /// @param kind  What the channel announced; another type is refused.
-Result<mapping::Piece> decodePiece(MessageKind kind, std::span<const uint8_t> bytes);
+/// @returns the pieces in order of their keys, at least one.
+Result<std::vector<mapping::Piece>> decodePieces(MessageKind kind, std::span<const uint8_t> bytes);
 
 }  // namespace shoal::wire

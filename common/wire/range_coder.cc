@@ -31,16 +31,21 @@ void Encoder::normalize() {
   }
 }
 
-int Encoder::bit(AdaptiveBit& model, int value) {
-  const uint32_t bound = (range_ >> 16) * model.zero;
+int Encoder::bit(uint32_t zero, int value) {
+  const uint32_t bound = (range_ >> 16) * zero;
   if (value == 0) {
     range_ = bound;
   } else {
     low_ += bound;
     range_ -= bound;
   }
-  model.update(value);
   normalize();
+  return value;
+}
+
+int Encoder::bit(AdaptiveBit& model, int value) {
+  bit(uint32_t{model.zero}, value);
+  model.update(value);
   return value;
 }
 
@@ -83,8 +88,8 @@ void Decoder::normalize() {
   }
 }
 
-int Decoder::bit(AdaptiveBit& model, int /*ignored*/) {
-  const uint32_t bound = (range_ >> 16) * model.zero;
+int Decoder::bit(uint32_t zero, int /*ignored*/) {
+  const uint32_t bound = (range_ >> 16) * zero;
   int value = 0;
   if (code_ < bound) {
     range_ = bound;
@@ -93,8 +98,13 @@ int Decoder::bit(AdaptiveBit& model, int /*ignored*/) {
     range_ -= bound;
     value = 1;
   }
-  model.update(value);
   normalize();
+  return value;
+}
+
+int Decoder::bit(AdaptiveBit& model, int /*ignored*/) {
+  const int value = bit(uint32_t{model.zero});
+  model.update(value);
   return value;
 }
 

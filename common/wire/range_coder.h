@@ -41,6 +41,9 @@ class Encoder {
 
   int bit(AdaptiveBit& model, int value);
 
+  /// A bit that is 0 with probability zero / 65536, 0 < zero < 65536.
+  int bit(uint32_t zero, int value);
+
   /// The low `bits` bits of `value`, each at the price of one bit. 0 <= bits <= 63.
   uint64_t direct(uint64_t value, int bits);
 
@@ -68,6 +71,7 @@ class Decoder {
   explicit Decoder(std::span<const uint8_t> bytes);
 
   int bit(AdaptiveBit& model, int ignored = 0);
+  int bit(uint32_t zero, int ignored = 0);
   uint64_t direct(uint64_t ignored, int bits);
 
   /// True once it has read further than any Encoder's stream goes on: the rest is invented. Loops stop here.

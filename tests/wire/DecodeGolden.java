@@ -43,10 +43,10 @@ public class DecodeGolden {
     expect(decode(types, folder.resolve("topics.bin")),
         Map.of("utime", time, "mission", mission, "robot", 3, "topic", 12, "part", 1, "num_parts", 3, "epoch", 1,
             "observation", 60, "num_words", 6));
-    expect(decode(types, folder.resolve("brick.bin")),
-        Map.of("utime", time, "mission", mission, "robot", 3, "brick_x", -2, "brick_y", 1, "brick_z", 0, "cells", 11));
-    expect(decode(types, folder.resolve("certainty.bin")),
-        Map.of("utime", time, "mission", mission, "robot", 3, "brick_x", -2, "certainties", 9));
+    expect(decode(types, folder.resolve("bricks.bin")),
+        Map.of("utime", time, "mission", mission, "robot", 3, "epoch", 1, "bricks", 2));
+    expect(decode(types, folder.resolve("certainties.bin")),
+        Map.of("utime", time, "mission", mission, "robot", 3, "epoch", 1, "certain_bricks", 2));
     expect(decode(types, folder.resolve("matches.bin")),
         Map.of("utime", time, "mission", mission, "map_digest", 77L, "num_chunks", 1, "correspondences", 4));
     expect(decode(types, folder.resolve("labels.bin")),

@@ -25,6 +25,7 @@
 #include "shoal/mapping/belief_files.h"
 #include "shoal/mapping/belief_pieces.h"
 #include "shoal/mapping/map_files.h"
+#include "shoal/wire/cut.h"
 #include "shoal/wire/limits.h"
 #include "shoal/wire/piece_codec.h"
 
@@ -34,11 +35,8 @@ using namespace shoal;  // NOLINT: a main file
 namespace fs = std::filesystem;
 
 // What a channel like SHOAL_R00_BRICK adds to a message in a datagram: LCM's header, the name, its NUL.
-size_t datagram(const mapping::Piece& part) {
-  const std::string channel =
-      "SHOAL_" + name(part.key.robot) + "_" + std::string(wire::channelKind(wire::kindOf(part)));
-  return wire::encode(part, 1, {}).size() + 8 + channel.size() + 1;
-}
+constexpr size_t kAround = 8 + 15 + 1;
+constexpr size_t kFixedTopics = 45, kFixedBricks = 35;
 
 struct Cost {
   size_t payload = 0;    // bytes of payloads
@@ -46,13 +44,10 @@ struct Cost {
   size_t count = 0;
 };
 
-void add(Cost& cost, const mapping::Piece& whole) {
-  const size_t fixed = std::holds_alternative<mapping::TopicPart>(whole.content) ? 45 : 53;
-  for (const mapping::Piece& part : wire::cutToFit(whole, wire::maxPayload(16))) {
-    cost.payload += wire::encode(part, 1, {}).size() - fixed;
-    cost.datagrams += datagram(part);
-    ++cost.count;
-  }
+void add(Cost& cost, size_t message, size_t fixed) {
+  cost.payload += message - fixed;
+  cost.datagrams += message + kAround;
+  ++cost.count;
 }
 
 std::map<std::array<int32_t, 3>, mapping::BrickPart> bricksOf(const std::vector<mapping::BrickCell>& cells) {
@@ -61,11 +56,32 @@ std::map<std::array<int32_t, 3>, mapping::BrickPart> bricksOf(const std::vector<
   return bricks;
 }
 
+std::vector<mapping::Piece> piecesOf(const std::vector<mapping::BrickCell>& cells) {
+  std::vector<mapping::Piece> pieces;
+  for (const auto& [index, brick] : bricksOf(cells))
+    pieces.push_back({{world::RobotId{0}, mapping::PieceKind::kBrick, index}, {0, 59}, 0, 1, brick});
+  return pieces;
+}
+
+// As many bricks a message as fit.
+std::vector<wire::Bytes> messagesOf(const std::vector<mapping::Piece>& pieces) {
+  const auto fits = [&](size_t begin, size_t end) {
+    try {
+      return wire::encode(std::span(pieces).subspan(begin, end - begin), 1, {}).size() <=
+             wire::maxPayload(16);
+    } catch (const std::invalid_argument&) {
+      return false;  // too long, or too many cells
+    }
+  };
+  std::vector<wire::Bytes> messages;
+  for (const auto& [begin, end] : wire::cutRuns(pieces.size(), wire::kMaxBricksPerMessage, fits))
+    messages.push_back(wire::encode(std::span(pieces).subspan(begin, end - begin), 1, {}));
+  return messages;
+}
+
 Cost costOfBricks(const std::vector<mapping::BrickCell>& cells) {
   Cost cost;
-  for (const auto& [index, brick] : bricksOf(cells)) {
-    add(cost, {{world::RobotId{0}, mapping::PieceKind::kBrick, index}, {0, 59}, 0, 1, brick});
-  }
+  for (const wire::Bytes& message : messagesOf(piecesOf(cells))) add(cost, message.size(), kFixedBricks);
   return cost;
 }
 
@@ -203,8 +219,10 @@ void printTopics(const std::string& run) {
       }
       ++topics;
       non_zero += topic.words.size();
-      add(cost,
-          {{*robot, mapping::PieceKind::kTopic, {number(topic.id), 0, 0}}, {0, 59}, 0, 1, std::move(part)});
+      const mapping::Piece whole{
+          {*robot, mapping::PieceKind::kTopic, {number(topic.id), 0, 0}}, {0, 59}, 0, 1, std::move(part)};
+      for (const mapping::Piece& each : wire::cutToFit(whole, wire::maxPayload(16)))
+        add(cost, wire::encode(each, 1, {}).size(), kFixedTopics);
     }
     for (const auto& group : of_group) ideal += group.bytes();
   }
@@ -213,23 +231,28 @@ void printTopics(const std::string& run) {
               static_cast<double>(cost.payload) / ideal, cost.datagrams);
 }
 
-// CPU milliseconds to encode all bricks, and to decode (and check) them.
+// CPU milliseconds to encode all bricks once it is known how many fit into each message, and to decode (and
+// check) them.
 void printTimes(const NamedMap& map) {
   const auto milliseconds = [](std::clock_t since) {
     return 1e3 * static_cast<double>(std::clock() - since) / CLOCKS_PER_SEC;
   };
-  std::vector<mapping::Piece> bricks;
-  for (const auto& [index, brick] : bricksOf(map.cells))
-    bricks.push_back({{world::RobotId{0}, mapping::PieceKind::kBrick, index}, {0, 59}, 0, 1, brick});
-  std::vector<wire::Bytes> messages;
+  const std::vector<mapping::Piece> pieces = piecesOf(map.cells);
+  std::vector<size_t> bricks;  // of each message
+  std::vector<wire::Bytes> messages = messagesOf(pieces);
+  for (const wire::Bytes& bytes : messages)
+    bricks.push_back(wire::decodePieces(wire::MessageKind::kBrick, bytes)->size());
+  messages.clear();
   const std::clock_t encoding = std::clock();
-  for (const auto& brick : bricks) messages.push_back(wire::encode(brick, 1, {}));
+  for (size_t i = 0, begin = 0; i < bricks.size(); begin += bricks[i++])
+    messages.push_back(wire::encode(std::span(pieces).subspan(begin, bricks[i]), 1, {}));
   const double encode_ms = milliseconds(encoding);
   const std::clock_t decoding = std::clock();
   size_t cells = 0;
   for (const auto& bytes : messages) {
-    const auto piece = wire::decodePiece(wire::MessageKind::kBrick, bytes);
-    cells += std::get<mapping::BrickPart>(piece->content).cells.size();
+    const auto decoded = wire::decodePieces(wire::MessageKind::kBrick, bytes);
+    for (const mapping::Piece& piece : *decoded)
+      cells += std::get<mapping::BrickPart>(piece.content).cells.size();
   }
   std::printf("\n%zu cells (%s): encoded in %.0f ms, decoded in %.0f ms of CPU time\n", cells,
               map.name.c_str(), encode_ms, milliseconds(decoding));

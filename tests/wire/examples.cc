@@ -69,7 +69,7 @@ Piece topic() {
   return {{RobotId{3}, PieceKind::kTopic, {12, 0, 0}}, {1, 60}, 1, 3, part};
 }
 
-Piece brick() {
+std::vector<Piece> bricks() {
   BrickPart part;
   for (int x = 0; x < 4; ++x) {
     for (int y = 0; y < 3; ++y) {
@@ -78,13 +78,19 @@ Piece brick() {
           {{-32 + x, 16 + y, x / 3}, TopicId{x < 2 ? 0 : 12}, {(50 + 2 * y) * int64_t{1'000'000}}});
     }
   }
-  return {{RobotId{3}, PieceKind::kBrick, {-2, 1, 0}}, {1, 54}, 0, 1, part};
+  const BrickPart beside{{{{-14, 17, -1}, TopicId{12}, {52'000'000}}, {{-14, 17, -2}, TopicId{5}, {0}}}};
+  BrickPart below = beside;
+  std::ranges::sort(below.cells);
+  return {{{RobotId{3}, PieceKind::kBrick, {-2, 1, 0}}, {1, 54}, 0, 1, part},
+          {{RobotId{3}, PieceKind::kBrick, {-1, 1, -1}}, {1, 49}, 2, 3, below}};
 }
 
-Piece certainty() {
+std::vector<Piece> certainties() {
   CertaintyPart part;
   for (int y = 0; y < 9; ++y) part.cells.push_back({{-32, 16 + y, 0}, static_cast<uint8_t>(7 * y)});
-  return {{RobotId{3}, PieceKind::kCertainty, {-2, 1, 0}}, {1, 54}, 0, 1, part};
+  const CertaintyPart above{{{{-32, 20, 16}, 63}, {{-31, 20, 16}, 60}}};
+  return {{{RobotId{3}, PieceKind::kCertainty, {-2, 1, 0}}, {1, 54}, 0, 1, part},
+          {{RobotId{3}, PieceKind::kCertainty, {-2, 1, 1}}, {1, 60}, 0, 1, above}};
 }
 
 std::vector<mapping::Correspondence> matches() {
@@ -131,8 +137,8 @@ std::vector<Example> goldenExamples() {
   std::vector<Example> examples;
   examples.push_back({"heartbeat", MessageKind::kHeartbeat, encode(heartbeat())});
   examples.push_back({"topics", MessageKind::kTopics, encode(topic(), kMission, time)});
-  examples.push_back({"brick", MessageKind::kBrick, encode(brick(), kMission, time)});
-  examples.push_back({"certainty", MessageKind::kCertainty, encode(certainty(), kMission, time)});
+  examples.push_back({"bricks", MessageKind::kBrick, encode(bricks(), kMission, time)});
+  examples.push_back({"certainties", MessageKind::kCertainty, encode(certainties(), kMission, time)});
   examples.push_back({"matches", MessageKind::kMatches, encodeMatches(matches(), 77, kMission, time).at(0)});
   examples.push_back({"labels", MessageKind::kLabels, encodeLabels(labels(), 77, kMission, time).at(0)});
   examples.push_back({"map_0", MessageKind::kMap, encodeMap(globalMap(), 77, kMission, time).at(0)});
@@ -159,8 +165,8 @@ Bytes decodeAndEncode(MessageKind kind, std::span<const uint8_t> bytes, DecodeEr
     case MessageKind::kBrick:
     case MessageKind::kCertainty:
     case MessageKind::kEdit:
-      return again(decodePiece(kind, bytes),
-                   [&](const Piece& piece) { return encode(piece, mission, time); });
+      return again(decodePieces(kind, bytes),
+                   [&](const std::vector<Piece>& pieces) { return encode(pieces, mission, time); });
     case MessageKind::kMatches:
       return again(decodeMatches(bytes),
                    [&](const MatchesChunk& chunk) { return encode(chunk, mission, time); });

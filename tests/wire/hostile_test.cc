@@ -33,7 +33,7 @@ size_t fixedBytesOf(MessageKind kind) {
       return 45;
     case MessageKind::kBrick:
     case MessageKind::kCertainty:
-      return 53;
+      return 35;
     case MessageKind::kMatches:
       return 43;
     case MessageKind::kLabels:

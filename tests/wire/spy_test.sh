@@ -37,7 +37,7 @@ export DISPLAY
 spy=$!
 children+=("$spy")
 "$bin/publish_messages" "$url" 60 SHOAL_R03_HEARTBEAT "$golden/heartbeat.bin" SHOAL_R03_TOPICS "$golden/topics.bin" \
-  SHOAL_R03_BRICK "$golden/brick.bin" SHOAL_R03_CERTAINTY "$golden/certainty.bin" \
+  SHOAL_R03_BRICK "$golden/bricks.bin" SHOAL_R03_CERTAINTY "$golden/certainties.bin" \
   SHOAL_OPERATOR_MATCHES "$golden/matches.bin" SHOAL_OPERATOR_LABELS "$golden/labels.bin" \
   SHOAL_OPERATOR_MAP "$golden/map_1.bin" >"$work/publish.log" 2>&1 &
 children+=($!)

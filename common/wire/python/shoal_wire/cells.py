@@ -1,56 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Columns of values over the cells of a brick: the parts of three payloads."""
+"""Columns of values over the cells of a message: the parts of three payloads."""
+from .bit_mixer import Contexts, Mixer
+from .cell_field import WEIGHTS
 from .errors import require
 from .layout import MAX_TIME, STEPS
 from .range_coder import Models
 
 
-def occupancy(bits, count):
-    """The cells there, (x, y, z) in [0, 16) each, ascending."""
-    x0, x1, y0, y1, z0, z1 = (bits.direct(4) for _ in range(6))
-    models = []
-    for context in range(64):
-        alike = bin(context & 7).count("1")
-        model = {3: (2000, 6), 2: (16000, 2), 1: (32768, 0), 0: (49000, 2)}[alike]
-        models.append(list((63500, 6) if alike == 0 and context & 32 else model))
-    columns, cells = {}, []  # (x, y) -> a bit per z
-    for x in range(x0, x1 + 1):
-        for y in range(y0, y1 + 1):
-            west, south, southwest = (columns.get(c, 0) for c in ((x - 1, y), (x, y - 1), (x - 1, y - 1)))
-            own = 0
-            for z in range(z0, z1 + 1):
-                if x > x0:
-                    w, w_up = west >> z & 1, west >> z + 1 & 1
-                else:
-                    w, w_up = south >> z & 1, south >> z + 1 & 1
-                    if y == y0 and z0 == z1:
-                        w = 1
-                s, s_up = (south >> z & 1, south >> z + 1 & 1) if y > y0 else (w, w_up)
-                sw = southwest >> z & 1 if x > x0 and y > y0 else s
-                if bits.bit(models[w | s << 1 | sw << 2 | w_up << 3 | s_up << 4 | (32 if own else 0)]):
-                    own |= 1 << z
-                    cells.append((x, y, z))
-            columns[x, y] = own
-    require(len(cells) == count, f"{len(cells)} cells, {count} were announced", "bad payload")
-    return cells
-
-
-def neighbours(cells):
-    """Per cell up to four positions of cells before it, the first repeated; () where there is none."""
-    columns, result = {}, []  # (x, y) -> [(z, position)]
-    for position, (x, y, z) in enumerate(cells):
-        own = columns.setdefault((x, y), [])
-        found = [own[-1][1]] if own and own[-1][0] == z - 1 else []
-        for column in ((x, y - 1), (x - 1, y), (x - 1, y - 1), (x - 1, y + 1)):
-            near = columns.get(column)
-            if near:
-                found.append(min(near, key=lambda c: abs(c[0] - z))[1])  # the lower of two as near comes first
-        own.append((z, position))
-        result.append((found + found[:1] * 4)[:4])
-    return result
-
-
-def palette(bits, limit, max_size=4096):
+def palette(bits, limit, max_size):
     size = bits.wide()
     require(1 <= size <= max_size, "size of a palette", "bad payload")
     models, values, follows = Models(), [], 0
@@ -62,65 +19,116 @@ def palette(bits, limit, max_size=4096):
     return values
 
 
-def indices(bits, near_cells, size, ordered):
+def _candidates(near):
+    """At most four values with their votes, best first, and the sum of all votes."""
+    votes = {}
+    for value, weight in zip(near, WEIGHTS):
+        if value >= 0:
+            votes[value] = votes.get(value, 0) + weight
+    return sorted(votes.items(), key=lambda item: -item[1])[:4], sum(votes.values())
+
+
+class _Questions:
+    """Is it the best candidate? the next? ..."""
+
+    def __init__(self):
+        self.shares = {}
+        for share in range(16):
+            for known in range(4):
+                for rank, (least, step) in enumerate(((12000, 3350), (6000, 3300), (6000, 3000), (6000, 3000))):
+                    self.shares[rank, share, known] = [least + share * step, 2]
+        self.inner, self.names, self.rings, self.surprised, self.outers = (Contexts() for _ in range(5))
+        self.mixer = Mixer(6)
+
+    def ask(self, bits, candidates, all_votes, rank, left, near, surprises):
+        asked, votes = candidates[rank]
+        share, known = min(15, votes * 16 // left), min(3, all_votes // 30)
+        relation = [0 if value < 0 else 2 if value == asked else 1 for value in near]
+
+        def of(*places):
+            return tuple(relation[place] for place in places)
+
+        nearest, second, ring, outer = of(0, 1, 2, 3), of(4, 5, 6, 18), of(7, 8, 9, 10), of(16, 17)
+        contexts = (self.shares[rank, share, known], self.inner[rank, nearest, second],
+                    self.names[min(asked, 31), nearest, rank], self.rings[rank, ring, nearest],
+                    self.surprised[rank, share, surprises, min(3, len(candidates))],
+                    self.outers[rank, outer, second, of(0, 1)])
+        return self.mixer.bit(bits, contexts, (rank, share // 4))
+
+
+def indices(bits, field, size, ordered):
     if size == 1:
-        return [0] * len(near_cells)
-    hits, names, distance, above = {}, Models(), Models(), [32768, 0]
-    width, result = (size - 1).bit_length(), []
-    for near_cell in near_cells:
-        near = [result[n] for n in near_cell]
-        value = None
-        if near:
-            a, b, c, d = near
-            pattern = (a == b) | (a == c) << 1 | (a == d) << 2 | (b == c) << 3 | (b == d) << 4 | (c == d) << 5
-            for k in range(4):
-                if near[k] in near[:k]:
-                    continue
-                model = hits.get((pattern, k))
-                if model is None:
-                    model = [32768, 0] if k else [2000, 6] if pattern == 63 else [16000, 2]
-                    hits[pattern, k] = model
-                if bits.bit(model):
-                    value = near[k]
-                    break
-        if value is None and near and ordered:
-            up = bits.bit(above)
-            step = bits.small(distance) + 1
-            value = near[0] + step if up else near[0] - step
+        return [0] * len(field.near)
+    questions, result, surprise = _Questions(), [], []
+    order, seen, hits = list(range(size)), [0] * size, Models()  # of names
+    after, distance, last = [32768, 0], Models(), 0  # of steps
+    for places in field.near:
+        near = [-1 if place < 0 else result[place] for place in places]
+        candidates, all_votes = _candidates(near)
+        surprises = sum(bit for place, bit in zip(places[:2], (1, 2)) if place >= 0 and surprise[place])
+        value, left, rank = None, all_votes, 0
+        for rank in range(len(candidates)):
+            if questions.ask(bits, candidates, all_votes, rank, left, near, surprises):
+                value = candidates[rank][0]
+                break
+            left = max(1, left - candidates[rank][1])
+        surprise.append(bool(candidates) and (rank > 0 or value is None))
+        if value is None and ordered:
+            origin, least = (candidates[0][0], 1) if candidates else (last, 0)
+            up = bits.bit(after)
+            step = bits.small(distance) + least
+            value = origin + step if up else origin - step
         elif value is None:
-            value = bits.tree(names, width)
+            ruled_out = {candidate for candidate, _ in candidates}
+            names = [name for name in order if name not in ruled_out]
+            require(names, "every name is ruled out", "bad payload")
+            value = names[-1]
+            for asked, name in enumerate(names[:-1]):
+                if bits.bit(hits[min(asked, 23)]):
+                    value = name
+                    break
         require(0 <= value < size, "an index into a palette", "bad payload")
         result.append(value)
+        last = value
+        if not ordered:
+            seen[value] += 1
+            place = at = order.index(value)
+            while place > 0 and seen[order[place - 1]] < seen[value]:
+                place -= 1
+            order.insert(place, order.pop(at))
     return result
 
 
-def column(bits, near_cells, limit, ordered=False):
-    values = palette(bits, limit)
-    return [values[i] for i in indices(bits, near_cells, len(values), ordered)]
+def column(bits, field, limit, max_size, ordered=False):
+    values = palette(bits, limit, max_size)
+    return [values[i] for i in indices(bits, field, len(values), ordered)]
 
 
-def times(bits, near_cells):
+def times(bits, field, max_size):
     period = bits.wide()
     require(1 <= period <= MAX_TIME, "period of the times", "bad payload")
-    return [period * t for t in column(bits, near_cells, MAX_TIME // period, ordered=True)]
+    return [period * t for t in column(bits, field, MAX_TIME // period, max_size, ordered=True)]
 
 
-def levels(bits, near_cells):
-    models, result = [Models() for _ in range(5)], []
-    for near_cell in near_cells:
-        expected, context = 32, 4
-        if near_cell:
-            a, b, c, d = (result[n] for n in near_cell)
-            expected = (2 * a + 2 * b + c + d + 3) // 6
-            spread = abs(a - b) + abs(b - c)
-            context = 0 if spread == 0 else 1 if spread < 4 else 2 if spread < 12 else 3
+def levels(bits, field):
+    models, result = [Models() for _ in range(6)], []
+    for places in field.near:
+        total = weights = 0
+        closest = [result[place] for place in places[:4] if place >= 0]
+        for place, weight in zip(places, WEIGHTS):
+            if place >= 0:
+                total += weight * result[place]
+                weights += weight
+        expected = (2 * total + weights) // (2 * weights) if weights else (STEPS + 1) // 2
+        if not weights:
+            context = 5
+        elif not closest:
+            context = 4
+        else:
+            spread = (max(closest) - min(closest)) * 32 // (STEPS + 1)
+            context = 0 if spread == 0 else 1 if spread < 3 else 2 if spread < 9 else 3
         coded = bits.small(models[context])
         value = expected + (-(coded + 1) // 2 if coded & 1 else coded // 2)
         require(0 <= value <= STEPS, "a certainty", "bad payload")
         result.append(value)
     return result
-
-
-def in_world(cells, message):
-    x0, y0, z0 = (16 * message["brick_" + axis] for axis in "xyz")
-    return [(x0 + x, y0 + y, z0 + z) for x, y, z in cells]

@@ -8,6 +8,7 @@ MAX_ROBOT = MAX_TOPIC = 9999
 OPERATORS = 10000  # what operators decided is a share of the state beside those of the robots
 MAX_LABEL = 99999999
 MAX_VOCABULARY = 2**20
+MAX_CELLS = 32768  # of all bricks in a message
 FORMAT = 1
 STEPS = 63  # certainties are in steps of 1/63
 MASK = 2**64 - 1  # hashes, digests and fingerprints are 64 bits
@@ -24,8 +25,8 @@ FIELDS = {
         ("z_m", "f"), ("bytes_sent", "q"), ("budget", "i"), ("queue_bytes", "i"), ("rejected", "i"),
         ("conflicts", "i"), ("ms_per_frame", "f")],
     "TOPICS": _PIECE + [("topic", "h"), ("num_words", "i")],
-    "BRICK": _PIECE + _BRICK + [("cells", "h")],
-    "CERTAINTY": _PIECE + _BRICK + [("certainties", "h")],
+    "BRICK": [("robot", "h"), ("epoch", "i"), ("bricks", "h")],
+    "CERTAINTY": [("robot", "h"), ("epoch", "i"), ("certain_bricks", "h")],
     "MATCHES": [("map_digest", "q")] + _CHUNK + [("correspondences", "i")],
     "LABELS": [("map_digest", "q")] + _CHUNK + [("labels", "h")],
     "EDIT": [

@@ -6,7 +6,8 @@ import struct
 
 from .errors import require
 from .layout import FIELDS, FORMAT, KINDS, LAYOUT, MASK, MAX_MESSAGE, MAX_ROBOT, MAX_TIME, UNSIGNED
-from .payloads import READ
+from .payloads import READ, brick_headers
+from .range_coder import Bits
 
 
 def peek(data):
@@ -42,8 +43,6 @@ def unframe(data):
         require(all(-2**27 <= m["brick_" + axis] < 2**27 for axis in "xyz"), "brick")
     if "chunk" in m:
         require(0 <= m["chunk"] < m["num_chunks"], "chunk")
-    for name in ("cells", "certainties"):
-        require(1 <= m.get(name, 1) <= 4096, name)
     return m, data[layout.size:]
 
 
@@ -51,8 +50,8 @@ def decode(data):
     """A message as a dict: "kind", the fields of its type in lcmtypes/*.lcm, and what its payload holds.
 
     HEARTBEAT: class_bytes {class: bytes}, roster [(robot, digest)]. TOPICS: created_us, weight, group_sizes,
-    words [(word, count)]. In place of the counts, BRICK: cells [((x, y, z), topic, seen_us)]. CERTAINTY:
-    certainties [((x, y, z), steps)]. MAP: fused_cells [((x, y, z), label, robot, seen_us, steps)]. MATCHES:
+    words [(word, count)]. In place of the counts, BRICK: bricks, dicts of part, num_parts, observation, brick_x, y, z
+    and cells [((x, y, z), topic, seen_us)]. CERTAINTY: certain_bricks, with certainties [((x, y, z), steps)]. MAP: fused_cells [((x, y, z), label, robot, seen_us, steps)]. MATCHES:
     correspondences [(robot, topic, label)]. EDIT: operation, author, counter, made_us, and topics [[robot, epoch,
     topic]], name, robot or undone [author, counter]. LABELS: labels [{label, name, cells, robots, first_seen_us}].
 
@@ -61,6 +60,25 @@ def decode(data):
     m, payload = unframe(bytes(data))
     READ[m["kind"]](m, payload)
     return m
+
+
+def pieces_of(m):
+    """The pieces of state in a decoded message of kind TOPICS, BRICK or CERTAINTY, as content_hash() takes them."""
+    if m["kind"] == "TOPICS":
+        return [m]
+    return [{"kind": m["kind"], "robot": m["robot"], "epoch": m["epoch"], **brick}
+            for brick in m["bricks" if m["kind"] == "BRICK" else "certain_bricks"]]
+
+
+def keys_of(data):
+    """(index, version, part) of each of pieces_of(decode(data)), without decoding all of it."""
+    m, payload = unframe(data)
+    if m["kind"] == "TOPICS":
+        return [(m["topic"], (m["epoch"], m["observation"]), m["part"])]
+    count = m["bricks" if m["kind"] == "BRICK" else "certain_bricks"]
+    require(1 <= count <= 1024, "bricks")
+    return [((b["brick_x"], b["brick_y"], b["brick_z"]), (m["epoch"], b["observation"]), b["part"])
+            for b in brick_headers(Bits(payload), count)]
 
 
 def parse_datagram(packet):

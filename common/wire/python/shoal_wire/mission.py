@@ -6,7 +6,7 @@ from .digests import content_hash, edit_hash, hash_of, map_digest
 from .errors import BadFile, BadMessage, require
 from .layout import LAYOUT, MASK, OPERATORS
 from .log import Log
-from .message import decode, parse_channel, peek, robot_name, unframe
+from .message import decode, keys_of, parse_channel, peek, pieces_of, robot_name, unframe
 
 
 class _Lists:
@@ -45,8 +45,9 @@ class Mission:
         self.refused = collections.Counter()
         self.heard = 0
         self.heartbeats = {}  # node -> the latest
-        self._versions = {}   # (robot, kind, index) -> {(epoch, observation): [raw, as they came]}
+        self._versions = {}   # (robot, kind, index) -> {(epoch, observation): [(raw, place in it), as they came]}
         self._seen = set()
+        self._decoded = {}    # raw -> its pieces, or None when it is bad
         self._usable = None
         self._digests = {}
         self._lists = {}      # (node, kind) -> _Lists
@@ -85,9 +86,9 @@ class Mission:
         if content in self._seen:  # all but when it was sent
             return
         self._seen.add(content)
-        index = m["topic"] if m["kind"] == "TOPICS" else (m["brick_x"], m["brick_y"], m["brick_z"])
-        versions = self._versions.setdefault((m["robot"], m["kind"], index), {})
-        versions.setdefault((m["epoch"], m["observation"]), []).append(data)
+        for place, (index, version, _) in enumerate(keys_of(data)):
+            versions = self._versions.setdefault((m["robot"], m["kind"], index), {})
+            versions.setdefault(version, []).append((data, place))
         self._usable = None
         self._digests = {}
 
@@ -124,17 +125,29 @@ class Mission:
     def _parts(self, raw):
         """The parts of one version, decoded; what is bad among `raw` is counted and forgotten."""
         parts, good = {}, []
-        for data in raw:
-            try:
-                m = decode(data)
-                alike = all(m["num_parts"] == other["num_parts"] for other in parts.values())
-                require(alike and m["part"] not in parts, "equal versions, other content", "conflict")
+        for data, place in raw:
+            pieces = self._decode(data)
+            if pieces is None:
+                continue
+            m = pieces[place]
+            alike = all(m["num_parts"] == other["num_parts"] for other in parts.values())
+            if alike and parts.get(m["part"], m) == m:  # heard again, perhaps in other company
                 parts[m["part"]] = m
-                good.append(data)
-            except BadMessage as error:
-                self.refused[error.reason] += 1
+                good.append((data, place))
+            else:
+                self.refused["conflict"] += 1
         raw[:] = good
         return parts
+
+    def _decode(self, data):
+        """The pieces of a message, decoded once; None, and counted once, when it is bad."""
+        if data not in self._decoded:
+            try:
+                self._decoded[data] = pieces_of(decode(data))
+            except BadMessage as error:
+                self.refused[error.reason] += 1
+                self._decoded[data] = None
+        return self._decoded[data]
 
     @property
     def cell_size_m(self):

@@ -4,8 +4,9 @@ import math
 import re
 
 from . import cells
+from .cell_field import CellField, Geometry
 from .errors import BadMessage, require
-from .layout import (MAX_LABEL, MAX_ROBOT, MAX_TIME, MAX_TOPIC, MAX_VOCABULARY, OPERATIONS, OPERATORS, PHASES,
+from .layout import (MAX_CELLS, MAX_LABEL, MAX_ROBOT, MAX_TIME, MAX_TOPIC, MAX_VOCABULARY, OPERATIONS, OPERATORS, PHASES,
                      TRAFFIC_CLASSES)
 from .range_coder import Bits, Models
 
@@ -83,22 +84,75 @@ def _read_topics(m, payload):
     m["group_sizes"], m["words"] = sizes, words
 
 
-def _read_brick(m, payload):
-    bits = Bits(payload)
-    there = cells.occupancy(bits, m["cells"])
-    near = cells.neighbours(there)
-    topics = cells.column(bits, near, MAX_TOPIC)
-    times = cells.times(bits, near)
-    bits.end()
-    m["cells"] = list(zip(cells.in_world(there, m), topics, times))
+def brick_headers(bits, count):
+    """Which bricks a message holds and of what versions, as dicts."""
+    x_models, y_models, row_models, above_models, z_models, version_models = (Models() for _ in range(6))
+    is_part, headers = [64000, 10], []
+
+    def zigzag(coded):
+        return -(coded + 1) // 2 if coded & 1 else coded // 2
+
+    for i in range(count):
+        if i == 0:
+            x, y, z = (zigzag(bits.wide() & 0xFFFFFFFF) for _ in range(3))
+            observation = bits.wide()
+            row_y = y
+        else:
+            step = bits.small(x_models)
+            was, before = y, z
+            y = y + bits.small(y_models) if step == 0 else row_y + zigzag(bits.small(row_models))
+            x += step
+            row_y = y if step else row_y
+            z = z + 1 + bits.small(above_models) if step == 0 and y == was else before + zigzag(bits.small(z_models))
+            observation += zigzag(bits.small(version_models))
+        part, num_parts = 0, 1
+        if bits.bit(is_part):
+            num_parts, part = bits.direct(8), bits.direct(8)
+            require(num_parts >= 2, "parts", "bad payload")
+        require(all(-2**27 <= index < 2**27 for index in (x, y, z)), "a brick", "bad payload")
+        require(0 <= observation < 2**31, "a version", "bad payload")
+        require(part < num_parts, "part")
+        header = {"part": part, "num_parts": num_parts, "observation": observation, "brick_x": x, "brick_y": y,
+                  "brick_z": z}
+        if headers:
+            last = headers[-1]
+            require((last["brick_x"], last["brick_y"], last["brick_z"]) < (x, y, z), "the order of bricks", "bad payload")
+        headers.append(header)
+    return headers
 
 
-def _read_certainty(m, payload):
+def _where(bits, m, count):
+    """The headers of all bricks, the field of their cells, and where each brick's cells begin and end."""
+    require(1 <= m[count] <= 1024, count)
+    require(0 <= m["robot"] <= MAX_ROBOT and m["epoch"] >= 0, "robot or epoch")
+    bricks, field, geometry, ranges = brick_headers(bits, m[count]), CellField(), Geometry(), []
+    for brick in bricks:
+        begin = len(field.cells)
+        geometry.read(bits, (brick["brick_x"], brick["brick_y"], brick["brick_z"]), field)
+        require(begin < len(field.cells) <= MAX_CELLS, "cells of a brick", "bad payload")
+        ranges.append((begin, len(field.cells)))
+    return bricks, field, ranges
+
+
+def _read_bricks(m, payload):
     bits = Bits(payload)
-    there = cells.occupancy(bits, m["certainties"])
-    levels = cells.levels(bits, cells.neighbours(there))
+    bricks, field, ranges = _where(bits, m, "bricks")
+    topics = cells.column(bits, field, MAX_TOPIC, MAX_CELLS)
+    times = cells.times(bits, field, MAX_CELLS)
     bits.end()
-    m["certainties"] = list(zip(cells.in_world(there, m), levels))
+    for brick, (begin, end) in zip(bricks, ranges):
+        brick["cells"] = list(zip(field.cells[begin:end], topics[begin:end], times[begin:end]))
+    m["bricks"] = bricks
+
+
+def _read_certainties(m, payload):
+    bits = Bits(payload)
+    bricks, field, ranges = _where(bits, m, "certain_bricks")
+    levels = cells.levels(bits, field)
+    bits.end()
+    for brick, (begin, end) in zip(bricks, ranges):
+        brick["certainties"] = list(zip(field.cells[begin:end], levels[begin:end]))
+    m["certain_bricks"] = bricks
 
 
 def _read_matches(m, payload):
@@ -158,14 +212,15 @@ def _read_map(m, payload):
         m["fused_cells"] = []
         return
     bits = Bits(payload)
-    there = cells.occupancy(bits, count)
-    near = cells.neighbours(there)
-    labels = cells.column(bits, near, MAX_LABEL)
-    robots = cells.column(bits, near, MAX_ROBOT)
-    times = cells.times(bits, near)
-    levels = cells.levels(bits, near)
+    field = CellField()
+    Geometry().read(bits, (m["brick_x"], m["brick_y"], m["brick_z"]), field)
+    require(len(field.cells) == count, f"{len(field.cells)} cells, {count} were announced", "bad payload")
+    labels = cells.column(bits, field, MAX_LABEL, 4096)
+    robots = cells.column(bits, field, MAX_ROBOT, 4096)
+    times = cells.times(bits, field, 4096)
+    levels = cells.levels(bits, field)
     bits.end()
-    m["fused_cells"] = list(zip(cells.in_world(there, m), labels, robots, times, levels))
+    m["fused_cells"] = list(zip(field.cells, labels, robots, times, levels))
 
 
 def _read_edit(m, payload):
@@ -225,6 +280,6 @@ def _name(raw):
     return name
 
 
-READ = {"HEARTBEAT": _read_heartbeat, "TOPICS": _read_topics, "BRICK": _read_brick, "CERTAINTY": _read_certainty,
+READ = {"HEARTBEAT": _read_heartbeat, "TOPICS": _read_topics, "BRICK": _read_bricks, "CERTAINTY": _read_certainties,
         "MATCHES": _read_matches, "LABELS": _read_labels, "MAP": _read_map,
         "EDIT": _read_edit}

@@ -18,24 +18,31 @@ class Bits:
             self.code = self.code << 8 | byte
         require(self.at - len(self.data) <= 4, "the payload ends early", "bad payload")
 
-    def bit(self, model):
-        """One bit; `model` is [zero, seen] and learns."""
-        zero, seen = model
+    def plain(self, zero):
+        """One bit that is 0 with probability zero / 65536."""
         bound = (self.range >> 16) * zero
         if self.code < bound:
             self.range = bound
-            zero += (65536 - zero) * 2 // (2 * seen + 3)
             one = 0
         else:
             self.code -= bound
             self.range -= bound
-            zero -= zero * 2 // (2 * seen + 3)
             one = 1
+        if self.range < 1 << 24:
+            self.normalize()
+        return one
+
+    def bit(self, model):
+        """One bit; `model` is [zero, seen] and learns."""
+        zero, seen = model
+        one = self.plain(zero)
+        if one:
+            zero -= zero * 2 // (2 * seen + 3)
+        else:
+            zero += (65536 - zero) * 2 // (2 * seen + 3)
         model[0] = 32 if zero < 32 else 65504 if zero > 65504 else zero
         if seen < 100:
             model[1] = seen + 1
-        if self.range < 1 << 24:
-            self.normalize()
         return one
 
     def direct(self, bits):
