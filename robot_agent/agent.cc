@@ -61,16 +61,6 @@ size_t mostBytes(const std::string& channel, int64_t budget) {
   return std::min(wire::maxPayload(channel.size()), best - comms::wireSize(channel.size(), 0));
 }
 
-// Bricks that wait share datagrams.
-std::optional<comms::Packet> join(std::span<const comms::Packet* const> packets, int64_t budget) {
-  std::vector<std::span<const uint8_t>> messages;
-  for (const comms::Packet* packet : packets) messages.emplace_back(packet->bytes);
-  const std::string& channel = packets.front()->channel;
-  auto bytes = wire::encodeTogether(messages, mostBytes(channel, budget));
-  if (!bytes) return std::nullopt;
-  return comms::Packet{channel, std::move(*bytes)};
-}
-
 void writeOut(const std::string& folder, const mapping::LocalBelief& belief, double cell_size_m,
               const std::vector<mapping::StampedPose>& path) {
   mapping::writeBelief(folder, belief, world::Grid(cell_size_m));
@@ -92,7 +82,9 @@ Agent::Agent(const AgentOptions& options, world::ObservationSource& source, comm
         comms::SenderOptions sender;
         sender.bytes_per_s = options.budget;
         sender.stamp = [](comms::Packet& packet, int64_t now_us) { wire::stampTime(packet.bytes, {now_us}); };
-        sender.join = [budget = options.budget](const auto& packets) { return join(packets, budget); };
+        sender.join = [this](std::span<const comms::SendQueue::Next> together) { return join(together); };
+        sender.most_joined_bytes = mostBytes(
+            comms::channelName(name_, wire::channelKind(wire::MessageKind::kCertainty)), options.budget);
         if (options.start_us > 0) sender.resumed_at_us = options.start_us;
         sender.make_heartbeat = [this](int64_t now_us) { return heartbeat(now_us); };
         return sender;
@@ -157,15 +149,27 @@ void Agent::publish() {
     for (const mapping::Piece& part : parts) {
       own_.apply(part);
       if (options_.fuse) others_.apply(part);
-      sender_.offer(trafficOf(part.key.kind), queueKey(part.key, part.part),
+      const std::string key = queueKey(part.key, part.part);
+      sender_.offer(trafficOf(part.key.kind), key,
                     {channel, wire::encode(part, options_.mission, world::Timestamp{})});
+      said_.insert_or_assign(key, part);
     }
     int32_t& offered = num_parts_[whole.key];
     for (auto stale = static_cast<int32_t>(parts.size()); stale < offered; ++stale) {
       sender_.forget(queueKey(whole.key, stale));
+      said_.erase(queueKey(whole.key, stale));
     }
     offered = static_cast<int32_t>(parts.size());
   }
+}
+
+// Bricks that wait share datagrams.
+std::optional<comms::Packet> Agent::join(std::span<const comms::SendQueue::Next> together) const {
+  std::vector<const mapping::Piece*> pieces;
+  for (const comms::SendQueue::Next& each : together) pieces.push_back(&said_.find(each.key)->second);
+  auto bytes = wire::encodeTogether(pieces, options_.mission);
+  if (!bytes) return std::nullopt;
+  return comms::Packet{together.front().packet->channel, std::move(*bytes)};
 }
 
 // Sends what the budget allows and listens, until mission time `to_us`.

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -51,6 +53,7 @@ class Agent {
   void passTimeUntil(int64_t to_us);
   void listen(int timeout_ms);
   bool isHeard() const;
+  std::optional<comms::Packet> join(std::span<const comms::SendQueue::Next> together) const;
   void write();
   comms::Packet heartbeat(int64_t now_us);
 
@@ -61,8 +64,9 @@ class Agent {
   robot::Explorer explorer_;
   mapping::BeliefChanges changes_;
   mapping::LocalBelief belief_;
-  mapping::BeliefStore own_;                        // what was said, for its digest
-  std::map<mapping::PieceKey, int32_t> num_parts_;  // keys in the send queue
+  mapping::BeliefStore own_;                                 // what was said, for its digest
+  std::map<mapping::PieceKey, int32_t> num_parts_;           // keys in the send queue
+  std::map<std::string, mapping::Piece, std::less<>> said_;  // by its keys
   fusion_node::MissionState others_;
   comms::MissionClock clock_;
   comms::Sender sender_;

@@ -10,6 +10,7 @@ namespace shoal::comms {
 namespace {
 
 constexpr size_t kMostJoined = 256;
+constexpr int kTriesToJoin = 6;
 
 }  // namespace
 
@@ -50,7 +51,7 @@ int64_t Sender::pump(int64_t now_us) {
   }
 }
 
-// As many as fit: from as many as fitted last time up or down in doubling steps, then by bisection.
+// About as many as fit: how many is guessed from how many did last time, and mended a few times.
 const Sender::Made* Sender::make(int64_t now_us) {
   if (made_ && made_->revision == queue_.revision()) return &*made_;
   made_.reset();
@@ -58,28 +59,21 @@ const Sender::Made* Sender::make(int64_t now_us) {
   if (next.empty()) return nullptr;
   const auto traffic = next.front().traffic;
   made_ = Made{queue_.revision(), *next.front().packet, 1, traffic, next.front().resent};
-  if (next.size() == 1) return &*made_;
-  std::vector<const Packet*> packets;
-  for (const SendQueue::Next& each : next) packets.push_back(each.packet);
-  const auto join = [&](size_t count) {
-    auto joined = options_.join(std::span(packets).first(count));
-    if (!joined) return false;
-    made_->packet = std::move(*joined);
-    made_->count = count;
-    return true;
-  };
   size_t& last = joined_[static_cast<size_t>(traffic)];
-  size_t bad = packets.size() + 1;
-  for (size_t count = std::clamp<size_t>(last, 2, packets.size()); made_->count < count;) {
-    if (!join(count)) {
-      bad = count;
-      break;
+  size_t too_many = next.size() + 1;
+  size_t count = std::clamp<size_t>(last, 2, next.size());
+  for (int tries = 0; tries < kTriesToJoin && made_->count < count && count < too_many; ++tries) {
+    auto joined = options_.join(std::span(next).first(count));
+    const size_t bytes = joined ? std::max<size_t>(joined->bytes.size(), 1) : 2 * options_.most_joined_bytes;
+    if (bytes > options_.most_joined_bytes) {
+      too_many = count;
+    } else {
+      made_->packet = std::move(*joined);
+      made_->count = count;
+      if (bytes * 8 > options_.most_joined_bytes * 7) break;  // full enough
     }
-    count = std::min(2 * count, packets.size());
-  }
-  while (bad - made_->count > 1) {
-    const size_t middle = made_->count + (bad - made_->count) / 2;
-    if (!join(middle)) bad = middle;
+    const size_t proportional = count * options_.most_joined_bytes / bytes;
+    count = std::clamp(proportional, made_->count + 1, std::max(too_many - 1, made_->count + 1));
   }
   last = made_->count;
   return &*made_;

@@ -35,9 +35,10 @@ struct SenderOptions {
   /// Writes the time of sending into a copy of an offered packet, which must keep its size. None when empty.
   std::function<void(Packet& packet, int64_t now_us)> stamp = {};
 
-  /// Makes one packet of several that were offered, all of one class and channel; nothing when they cannot
-  /// share a datagram or it would be too long. Then more is said with fewer headers. None when empty.
-  std::function<std::optional<Packet>(std::span<const Packet* const> packets)> join = {};
+  /// Makes one packet, of any size, of several that were offered, all of one class and channel; nothing when
+  /// they cannot share a datagram. Then more is said with fewer headers. None when empty.
+  std::function<std::optional<Packet>(std::span<const SendQueue::Next> together)> join = {};
+  size_t most_joined_bytes = 0;  ///< of a message that join() made; longer ones are not sent
 
   /// The process came back after a crash and may have used its whole budget up to this mission time.
   std::optional<int64_t> resumed_at_us = {};

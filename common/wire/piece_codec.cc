@@ -243,29 +243,13 @@ Bytes encode(std::span<const Piece> pieces, int32_t mission, world::Timestamp ti
   return checkedSize(encodeValid(sorted, mission, time), "piece");
 }
 
-std::optional<Bytes> encodeTogether(std::span<const std::span<const uint8_t>> messages, size_t max_payload) {
-  if (messages.empty()) return std::nullopt;
-  const auto header = peek(messages.front());
-  if (!header || (header->kind != MessageKind::kBrick && header->kind != MessageKind::kCertainty))
-    return std::nullopt;
-  std::vector<Piece> all;
-  for (const auto& bytes : messages) {
-    auto pieces = decodePieces(header->kind, bytes);
-    if (!pieces) return std::nullopt;
-    std::ranges::move(*pieces, std::back_inserter(all));
-  }
-  std::vector<const Piece*> sorted;
-  size_t cells = 0;
-  for (const Piece& piece : all) {
-    cells += numCells(piece);
-    sorted.push_back(&piece);
-  }
-  if (cells > kMaxCellsPerMessage) return std::nullopt;
+std::optional<Bytes> encodeTogether(std::span<const Piece* const> pieces, int32_t mission) {
+  std::vector<const Piece*> sorted(pieces.begin(), pieces.end());
   std::ranges::sort(sorted, {}, [](const Piece* piece) { return piece->key; });
-  if (!faultTogether(sorted).empty()) return std::nullopt;
-  Bytes bytes = encodeValid(sorted, header->mission, {});
-  if (bytes.size() > max_payload) return std::nullopt;
-  return bytes;
+  size_t cells = 0;
+  for (const Piece* piece : sorted) cells += numCells(*piece);
+  if (sorted.empty() || cells > kMaxCellsPerMessage || !faultTogether(sorted).empty()) return std::nullopt;
+  return encodeValid(sorted, mission, {});
 }
 
 std::vector<Piece> cutToFit(const Piece& whole, size_t max_payload) {

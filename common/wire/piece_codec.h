@@ -36,9 +36,8 @@ Bytes encode(const mapping::Piece& piece, int32_t mission, world::Timestamp time
 /// @throws std::invalid_argument as above, or saying why they cannot share a message.
 Bytes encode(std::span<const mapping::Piece> pieces, int32_t mission, world::Timestamp time);
 
-/// What several messages say in one; nothing when they cannot share a message or it would be longer than
-/// `max_payload`. The time of sending becomes 0. Cost: decodes all and encodes once.
-std::optional<Bytes> encodeTogether(std::span<const std::span<const uint8_t>> messages, size_t max_payload);
+/// The same, of any size; nothing when they cannot share a message. The time of sending is 0.
+std::optional<Bytes> encodeTogether(std::span<const mapping::Piece* const> pieces, int32_t mission);
 
 /// Cuts a whole piece (part 0 of 1, of any size) into parts of at most `max_payload` encoded bytes.
 ///

@@ -19,21 +19,20 @@ class Recorder : public Bus {
   std::vector<Packet> sent;
 };
 
-// Bytes one after the other, up to `most`.
-auto concatenating(size_t most) {
-  return [most](std::span<const Packet* const> packets) -> std::optional<Packet> {
-    Packet all{packets.front()->channel, {}};
-    for (const Packet* packet : packets) all.bytes.insert(all.bytes.end(), packet->bytes.begin(), packet->bytes.end());
-    if (all.bytes.size() > most) return std::nullopt;
-    return all;
-  };
+// Bytes one after the other.
+std::optional<Packet> concatenate(std::span<const SendQueue::Next> together) {
+  Packet all{together.front().packet->channel, {}};
+  for (const SendQueue::Next& next : together)
+    all.bytes.insert(all.bytes.end(), next.packet->bytes.begin(), next.packet->bytes.end());
+  return all;
 }
 
 SenderOptions options(int64_t bytes_per_s, size_t most) {
   SenderOptions sender;
   sender.bytes_per_s = bytes_per_s;
   sender.wall = FakeWall().time();
-  sender.join = concatenating(most);
+  sender.join = concatenate;
+  sender.most_joined_bytes = most;
   return sender;
 }
 

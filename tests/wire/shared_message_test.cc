@@ -95,27 +95,19 @@ TEST(SharedMessageTest, RefusesWhatCannotShare) {
   EXPECT_THROW(encode(topics, 1, {}), std::invalid_argument);
 }
 
-TEST(EncodeTogetherTest, SaysWhatTheMessagesSay) {
+TEST(EncodeTogetherTest, SaysWhatThePiecesSayOrNothing) {
   Random random(3);
   const auto pieces = someBricks(5, 0.002, random);
-  std::vector<Bytes> messages;
-  for (const Piece& piece : pieces) messages.push_back(encode(piece, 6, {}));
-  std::vector<std::span<const uint8_t>> spans(messages.begin(), messages.end());
-  const auto together = encodeTogether(spans, kMaxMessageBytes);
-  ASSERT_TRUE(together);
-  EXPECT_EQ(*together, encode(pieces, 6, {}));
-  EXPECT_FALSE(encodeTogether(spans, together->size() - 1));
-  EXPECT_TRUE(encodeTogether(spans, together->size()));
-  // Shared messages can be shared again.
-  const Bytes first = *encodeTogether(std::span(spans).first(3), kMaxMessageBytes);
-  const std::vector<std::span<const uint8_t>> rest = {spans[3], first, spans[4]};
-  EXPECT_EQ(*encodeTogether(rest, kMaxMessageBytes), *together);
-  const std::vector<std::span<const uint8_t>> twice = {spans[0], spans[0]};
-  EXPECT_FALSE(encodeTogether(twice, kMaxMessageBytes));
-  EXPECT_FALSE(encodeTogether({}, kMaxMessageBytes));
-  const Bytes topic = encode(topicPiece(3, 100, 1, 9, random), 6, {});
-  const std::vector<std::span<const uint8_t>> others = {topic, topic};
-  EXPECT_FALSE(encodeTogether(others, kMaxMessageBytes));
+  std::vector<const Piece*> pointers;
+  for (const Piece& piece : pieces) pointers.push_back(&piece);
+  std::ranges::reverse(pointers);
+  EXPECT_EQ(encodeTogether(pointers, 6), encode(pieces, 6, {}));
+  pointers.push_back(&pieces[0]);  // twice
+  EXPECT_FALSE(encodeTogether(pointers, 6));
+  EXPECT_FALSE(encodeTogether({}, 6));
+  const Piece topic = topicPiece(3, 100, 1, 9, random);
+  const std::vector<const Piece*> topics = {&topic, &topic};
+  EXPECT_FALSE(encodeTogether(topics, 6));
 }
 
 // No message makes a receiver hold more cells than the cap, whatever it says.
