@@ -24,8 +24,8 @@ using fusion_node::stopRequested;
 constexpr int64_t kSecondUs = 1'000'000;
 constexpr int kAwaitMs = 20;  // between two looks at a live source
 // As fast as possible still leaves the others time to listen: wall time for a mission second after landing.
-constexpr auto kBusySecond = std::chrono::milliseconds(10);    // new content waits
-constexpr auto kIdleSecond = std::chrono::milliseconds(30);    // somebody may still lack something
+constexpr auto kBusySecond = std::chrono::milliseconds(40);    // new content waits
+constexpr auto kIdleSecond = std::chrono::milliseconds(120);   // somebody may still lack something
 constexpr auto kHeardSecond = std::chrono::milliseconds(300);  // nobody does
 
 comms::TrafficClass trafficOf(mapping::PieceKind kind) {
