@@ -6,6 +6,7 @@
 #include "shoal/comms/channels.h"
 #include "shoal/wire/message_kind.h"
 #include "shoal/wire/piece_codec.h"
+#include "shoal/wire/repair_codec.h"
 
 namespace shoal::fusion_node {
 namespace {
@@ -94,18 +95,23 @@ void MissionState::hear(const comms::Packet& packet, comms::Stats& stats) {
       if (!piece) return stats.countRejected(wire::name(piece.error()));
       const bool is_edit = piece->key.robot == mapping::kOperators;  // whoever made it, any node may say it
       if (!is_edit && name(piece->key.robot) != channel->node) return stats.countRejected("wrong sender");
-      switch (apply(*piece)) {
-        case mapping::Applied::kConflict:
-          return stats.countRejected("conflict");
-        case mapping::Applied::kRejected:
-          return stats.countRejected("over limit");
-        default:
-          return;
-      }
+      return take(*piece, false, stats);
+    }
+    case wire::MessageKind::kRepair: {  // whoever made it, any node may say it
+      const auto piece = wire::decodeRepair(packet.bytes);
+      if (!piece) return stats.countRejected(wire::name(piece.error()));
+      return take(*piece, true, stats);
     }
     default:
       return;  // what fusion nodes publish for people is not part of the state
   }
+}
+
+void MissionState::take(const mapping::Piece& piece, bool repaired, comms::Stats& stats) {
+  const mapping::Applied applied = apply(piece);
+  if (on_piece_) on_piece_(piece, repaired);
+  if (applied == mapping::Applied::kConflict) stats.countRejected("conflict");
+  if (applied == mapping::Applied::kRejected) stats.countRejected("over limit");
 }
 
 mapping::Applied MissionState::apply(const mapping::Piece& piece) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <set>
 #include <string>
@@ -41,6 +42,11 @@ class MissionState {
   /// Takes in a piece of one's own.
   mapping::Applied apply(const mapping::Piece& piece);
 
+  /// Calls `listener` with every piece that is heard from now on, and whether somebody said it again.
+  void onPiece(std::function<void(const mapping::Piece&, bool repaired)> listener) {
+    on_piece_ = std::move(listener);
+  }
+
   const mapping::BeliefStore& beliefs() const { return beliefs_; }
   const std::map<std::string, wire::Heartbeat>& heartbeats() const { return heartbeats_; }
   /// Ids of other missions that were heard.
@@ -71,6 +77,8 @@ class MissionState {
   const matching::MatcherOptions& matcher() const { return matcher_; }
 
  private:
+  void take(const mapping::Piece& piece, bool repaired, comms::Stats& stats);
+
   int32_t mission_;
   matching::MatcherOptions matcher_;
   double cell_size_m_;
@@ -81,6 +89,7 @@ class MissionState {
   world::Timestamp latest_;
   mapping::GlobalMap map_;
   uint64_t map_digest_ = 0;
+  std::function<void(const mapping::Piece&, bool repaired)> on_piece_;
 };
 
 }  // namespace shoal::fusion_node

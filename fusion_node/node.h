@@ -8,6 +8,7 @@
 
 #include "fusion_node/mission_state.h"
 #include "fusion_node/query_server.h"
+#include "fusion_node/repair.h"
 #include "shoal/comms/bus.h"
 #include "shoal/comms/mission_clock.h"
 #include "shoal/comms/sender.h"
@@ -45,6 +46,7 @@ class Node {
 
  private:
   comms::Packet heartbeat(int64_t now_us);
+  void hear(const comms::Packet& packet);
   void publishMap();
   nlohmann::ordered_json answer(const nlohmann::ordered_json& question);
   nlohmann::ordered_json answerEdit(const nlohmann::ordered_json& question);
@@ -58,6 +60,7 @@ class Node {
   comms::Bus& local_;
   comms::MissionClock clock_;
   comms::Sender sender_;
+  Repair repair_;
   std::optional<QueryServer> queries_;
   std::map<std::string, size_t> num_chunks_;  // in the send queue, by channel
   uint64_t published_digest_ = 0;

@@ -23,6 +23,7 @@
 #include "operator_console/mission_commands.h"
 #include "operator_console/mission_watch.h"
 #include "operator_console/progress.h"
+#include "operator_console/recording_repair.h"
 #include "operator_console/stop_signal.h"
 #include "operator_console/supervisor.h"
 #include "shoal/comms/kernel_limits.h"
@@ -30,6 +31,7 @@
 #include "shoal/comms/lcm_url.h"
 #include "shoal/comms/link_model.h"
 #include "shoal/random.h"
+#include "shoal/wire/message_kind.h"
 
 namespace shoal::console {
 namespace {
@@ -113,6 +115,7 @@ class Mission {
   bool turnUntil(Clock::duration limit, Done&& done);
   std::vector<std::string> settle();
   std::vector<std::string> settleRecording();
+  void askForRecording();
   void stop(const std::vector<std::string>& names, int signal, const char* doing);
   void stopTeam();
   std::string singleProgress() const;
@@ -129,6 +132,7 @@ class Mission {
   Clock::time_point started_, drawn_;
   std::set<std::string> may_end_ = {"single"};  // in good order
   std::string doing_ = "starting";
+  double asked_at_s_ = 0;  // mission time
 };
 
 // Listens, redraws, and throws when the mission cannot go on.
@@ -265,7 +269,25 @@ std::vector<std::string> Mission::settle() {
   }
 }
 
-// Until the recording alone adds up to the state: what it missed, robots say again.
+// Asks for what the recording lacks, within a node's budget.
+void Mission::askForRecording() {
+  const size_t most =
+      options_.budget == 0 ? 1000 : std::clamp<size_t>(static_cast<size_t>(options_.budget) / 2, 100, 1000);
+  for (comms::Packet& packet :
+       requestsForRecording(recordingPath(options_), options_.mission, watch_.nodes(), most)) {
+    const double pause_s = options_.budget == 0
+                               ? 0.1
+                               : std::max(1.1, 1.1 * static_cast<double>(comms::wireSize(packet)) /
+                                                   static_cast<double>(options_.budget));
+    const bool passed = turnUntil(kLogCheck, [&] { return watch_.missionTime() > asked_at_s_ + pause_s; });
+    if (!passed) return;  // mission time stands still: somebody else will be missed first
+    asked_at_s_ = watch_.missionTime();
+    wire::stampTime(packet.bytes, {std::llround(asked_at_s_ * 1e6)});
+    bus_.publish(packet);
+  }
+}
+
+// Until the recording alone adds up to the state: what it missed, whoever holds it says again.
 std::vector<std::string> Mission::settleRecording() {
   doing_ = "landed; the recording is checked";
   const auto deadline = Clock::now() + std::chrono::duration<double>(options_.settle_timeout_s);
@@ -274,6 +296,7 @@ std::vector<std::string> Mission::settleRecording() {
     const auto lacking =
         lackingInLog(recordingPath(options_), options_.mission, watch_.stateDigest(), watch_.nodes());
     if (lacking.empty() || Clock::now() >= deadline) return lacking;
+    askForRecording();
     turnUntil(kLogCheck, [] { return false; });
   }
 }

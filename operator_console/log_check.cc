@@ -7,6 +7,7 @@
 #include "shoal/comms/log_reader.h"
 #include "shoal/wire/message_kind.h"
 #include "shoal/wire/piece_codec.h"
+#include "shoal/wire/repair_codec.h"
 #include "shoal/world/ids.h"
 
 namespace shoal::console {
@@ -19,8 +20,10 @@ PieceAudit auditOf(const std::string& path, int32_t mission) {
     const auto header = wire::peek(event->packet.bytes);
     const auto channel = comms::parseChannel(event->packet.channel);
     if (!header || !channel || header->mission != mission) continue;
-    const auto piece = wire::decodePiece(header->kind, event->packet.bytes);
-    if (piece && world::name(piece->key.robot) == channel->node) pieces.hear(*piece);
+    const bool repaired = header->kind == wire::MessageKind::kRepair;
+    const auto piece = repaired ? wire::decodeRepair(event->packet.bytes)
+                                : wire::decodePiece(header->kind, event->packet.bytes);
+    if (piece && (repaired || world::name(piece->key.robot) == channel->node)) pieces.hear(*piece);
   }
   return pieces;
 }

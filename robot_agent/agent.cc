@@ -15,6 +15,7 @@
 #include "shoal/mapping/belief_files.h"
 #include "shoal/mapping/map_files.h"
 #include "shoal/wire/piece_codec.h"
+#include "shoal/wire/repair_codec.h"
 
 namespace shoal::robot_agent {
 namespace {
@@ -72,14 +73,23 @@ Agent::Agent(const AgentOptions& options, world::ObservationSource& source, comm
       belief_{.robot = options.explorer.robot, .version = {}, .groups = {}, .topics = {}, .cells = {}},
       others_(options.mission, options.matcher),
       clock_(options.rate, options.start_us),
-      sender_(bus, nullptr, [&] {
-        comms::SenderOptions sender;
-        sender.bytes_per_s = options.budget;
-        sender.stamp = [](comms::Packet& packet, int64_t now_us) { wire::stampTime(packet.bytes, {now_us}); };
-        if (options.start_us > 0) sender.resumed_at_us = options.start_us;
-        sender.make_heartbeat = [this](int64_t now_us) { return heartbeat(now_us); };
-        return sender;
-      }()) {}
+      sender_(bus, nullptr,
+              [&] {
+                comms::SenderOptions sender;
+                sender.bytes_per_s = options.budget;
+                sender.stamp = [](comms::Packet& packet, int64_t now_us) {
+                  wire::stampTime(packet.bytes, {now_us});
+                };
+                if (options.start_us > 0) sender.resumed_at_us = options.start_us;
+                sender.make_heartbeat = [this](int64_t now_us) { return heartbeat(now_us); };
+                return sender;
+              }()),
+      repair_({name_, options.mission, options.budget, number(options.explorer.robot), options.fuse,
+               [this](const mapping::Piece& piece) {
+                 return piece.key.robot == options_.explorer.robot &&
+                        sender_.queue().isWaiting(queueKey(piece.key, piece.part));
+               }},
+              others_, sender_) {}
 
 void Agent::run() {
   fly();
@@ -113,7 +123,9 @@ void Agent::fly() {
 // Sends and listens meanwhile. Mission time as fast as possible does not pass: only observations move it.
 void Agent::awaitObservation() {
   while (!stopRequested() && !source_.ready()) {
-    sender_.pump(clock_.now());
+    const int64_t now = clock_.now();
+    repair_.pump(now);
+    sender_.pump(now);
     listen(kAwaitMs);
   }
 }
@@ -138,11 +150,11 @@ void Agent::publish() {
     const std::string channel = comms::channelName(name_, wire::channelKind(wire::kindOf(whole)));
     // Under a thin budget small datagrams use more of it: comms/budget.h.
     const size_t best = comms::efficientDatagram(options_.budget, kPieceOverheadBytes);
-    const size_t most = best - comms::wireSize(channel.size(), 0);
+    const size_t most = std::min(best - comms::wireSize(channel.size(), 0), wire::kMaxRepairableBytes);
     const auto parts = wire::cutToFit(whole, std::min(wire::maxPayload(channel.size()), most));
     for (const mapping::Piece& part : parts) {
       own_.apply(part);
-      if (options_.fuse) others_.apply(part);
+      others_.apply(part);
       sender_.offer(trafficOf(part.key.kind), queueKey(part.key, part.part),
                     {channel, wire::encode(part, options_.mission, world::Timestamp{})});
     }
@@ -158,7 +170,8 @@ void Agent::publish() {
 void Agent::passTimeUntil(int64_t to_us) {
   while (!stopRequested()) {
     const int64_t now = clock_.now();
-    const int64_t next = std::min(sender_.pump(now), to_us);
+    const int64_t repair_due = repair_.pump(now);
+    const int64_t next = std::min({sender_.pump(now), repair_due, to_us});
     const auto wait_ms = static_cast<int>(std::min<int64_t>(clock_.wallUntil(next) / 1000, 50));
     listen(wait_ms);
     if (now >= to_us) return;
@@ -168,8 +181,8 @@ void Agent::passTimeUntil(int64_t to_us) {
 
 void Agent::listen(int timeout_ms) {
   bus_.receive(timeout_ms, [this](const comms::Packet& packet) {
-    if (!options_.fuse && !packet.channel.ends_with("_HEARTBEAT")) return;
     others_.hear(packet, sender_.stats());
+    repair_.hear(packet, clock_.now());
   });
   if (options_.fuse && phase_ != wire::Phase::kFlying) others_.refreshMap();
   for (; warned_of_missions_ < others_.otherMissions().size(); ++warned_of_missions_) {
@@ -202,7 +215,8 @@ void Agent::linger() {
 bool Agent::isHeard() const {
   bool heard = false;
   for (const auto& [node, heartbeat] : others_.heartbeats()) {
-    if (node == name_ || heartbeat.roster.empty()) continue;
+    const bool fuses = heartbeat.phase == wire::Phase::kNode || heartbeat.map_of_state != 0;
+    if (node == name_ || !fuses || heartbeat.roster.empty()) continue;
     const auto mine =
         std::ranges::find(heartbeat.roster, options_.explorer.robot, &wire::Heartbeat::Share::robot);
     if (mine == heartbeat.roster.end() ||
@@ -243,8 +257,8 @@ comms::Packet Agent::heartbeat(int64_t now_us) {
   if (options_.fuse) {
     h.map_digest = others_.mapDigest();
     h.map_of_state = others_.map().state_digest;
-    h.roster = others_.roster();
   }
+  h.roster = repair_.roster(now_us);
   h.vocabulary = explorer_.fingerprint();
   h.host = fusion_node::hostHash();
   h.pid = ::getpid();
@@ -260,7 +274,7 @@ comms::Packet Agent::heartbeat(int64_t now_us) {
   h.rejected = static_cast<int32_t>(std::min<uint64_t>(rejected, INT32_MAX));
   h.conflicts = others_.conflicts() + (warned_of_twin_ ? 1 : 0);
   h.ms_per_frame = path_.empty() ? 0.f : static_cast<float>(total_ms_ / static_cast<double>(path_.size()));
-  for (size_t i = 0; i < comms::kNumTrafficClasses; ++i) {
+  for (size_t i = 0; i < wire::Heartbeat::kNumClasses; ++i) {
     h.class_bytes[i] = static_cast<int64_t>(sender_.stats().sent[i].bytes);
   }
   const std::string channel = comms::channelName(name_, "HEARTBEAT");

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "fusion_node/mission_state.h"
+#include "fusion_node/repair.h"
 #include "shoal/comms/bus.h"
 #include "shoal/comms/mission_clock.h"
 #include "shoal/comms/sender.h"
@@ -66,6 +67,7 @@ class Agent {
   fusion_node::MissionState others_;
   comms::MissionClock clock_;
   comms::Sender sender_;
+  fusion_node::Repair repair_;
   std::vector<mapping::StampedPose> path_;
   wire::Phase phase_ = wire::Phase::kFlying;
   double total_ms_ = 0;

@@ -51,6 +51,9 @@ class BeliefStore {
       for (const auto& [part, piece] : at->second.parts) visitor(piece);
   }
 
+  /// A usable part of a piece; null when it is not held. Valid until the next apply().
+  const Piece* find(const PieceKey& key, int32_t part) const;
+
   /// The newest epoch of a robot that was heard of; -1 when it never was.
   int32_t epochOf(world::RobotId robot) const;
 

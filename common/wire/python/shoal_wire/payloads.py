@@ -225,6 +225,10 @@ def _name(raw):
     return name
 
 
+def _read_request(m, payload):
+    m["talk"] = payload.hex()
+
+
 READ = {"HEARTBEAT": _read_heartbeat, "TOPICS": _read_topics, "BRICK": _read_brick, "CERTAINTY": _read_certainty,
         "MATCHES": _read_matches, "LABELS": _read_labels, "MAP": _read_map,
-        "EDIT": _read_edit}
+        "EDIT": _read_edit, "REQUEST": _read_request}
