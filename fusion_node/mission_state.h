@@ -37,7 +37,8 @@ class MissionState {
   MissionState(int32_t mission, const matching::MatcherOptions& matcher, double cell_size_m = 1.0);
 
   /// Takes a message in. Refusals are counted in `stats`.
-  void hear(const comms::Packet& packet, comms::Stats& stats);
+  /// @returns true when it holds state that was not held before.
+  bool hear(const comms::Packet& packet, comms::Stats& stats);
 
   /// Takes in a piece of one's own.
   mapping::Applied apply(const mapping::Piece& piece);
@@ -77,7 +78,7 @@ class MissionState {
   const matching::MatcherOptions& matcher() const { return matcher_; }
 
  private:
-  void take(const mapping::Piece& piece, bool repaired, comms::Stats& stats);
+  bool take(const mapping::Piece& piece, bool repaired, comms::Stats& stats);
 
   int32_t mission_;
   matching::MatcherOptions matcher_;

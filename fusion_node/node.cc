@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include <spdlog/spdlog.h>
@@ -57,6 +58,7 @@ Node::Node(const NodeOptions& options, comms::Bus& link, comms::Bus& local)
               senderOptions(options.budget, [this](int64_t now_us) { return heartbeat(now_us); })),
       repair_({options.name, options.mission, options.budget, {}, true, {}}, state_, sender_) {
   if (!options.state_dir.empty()) {
+    recall();
     loadEdits();
     queries_.emplace(options.state_dir, [this](const Json& question) { return answer(question); });
   }
@@ -104,8 +106,28 @@ void Node::turn(int timeout_ms) {
 }
 
 void Node::hear(const comms::Packet& packet) {
-  state_.hear(packet, sender_.stats());
+  const bool is_new = state_.hear(packet, sender_.stats());
+  try {
+    if (memory_) memory_->keep(packet, is_new, state_);
+  } catch (const std::exception& error) {  // a disk that is full must not end the mission
+    spdlog::error("{}; from now on what is heard is kept in memory alone", error.what());
+    memory_.reset();
+  }
   repair_.hear(packet, clock_.now());
+}
+
+// Comes back with all that it had heard before it ended, however it did; its clock goes on.
+void Node::recall() {
+  memory_.emplace(options_.state_dir, options_.name, options_.mission);
+  const auto clock = memory_->recall(state_);
+  if (!clock) return;
+  const auto now_us = std::chrono::duration_cast<std::chrono::microseconds>(
+                          std::chrono::system_clock::now().time_since_epoch())
+                          .count();
+  const auto passed_us = options_.rate * static_cast<double>(std::max<int64_t>(now_us - clock->second, 0));
+  clock_.advanceTo(clock->first + std::llround(passed_us));
+  spdlog::info("comes back with {} pieces of {} robots, at {:.1f} s", state_.beliefs().numPieces(),
+               state_.beliefs().robots().size(), static_cast<double>(clock_.now()) * 1e-6);
 }
 
 void Node::publishMap() {

@@ -28,7 +28,8 @@ Json bytesByClass(const RunInfo& run) {
     int64_t rest = heartbeat.bytes_sent;
     for (size_t i = 0; i < wire::Heartbeat::kNumClasses; ++i) {
       bytes[node][std::string(comms::kTrafficClassNames[i])] = heartbeat.class_bytes[i];
-      if (static_cast<comms::TrafficClass>(i) != comms::TrafficClass::kLocal) rest -= heartbeat.class_bytes[i];
+      if (static_cast<comms::TrafficClass>(i) != comms::TrafficClass::kLocal)
+        rest -= heartbeat.class_bytes[i];
     }
     bytes[node]["repair"] = std::max<int64_t>(rest, 0);
   }

@@ -50,10 +50,20 @@ constexpr size_t kPieceOverheadBytes = 110;
 // images, and at the end. A count, so that what is said does not depend on how fast the robot flew.
 constexpr size_t kPublishEvery = 5;
 
+// A multiple of that. What was flown since the last checkpoint is flown again after a crash, with the same
+// result; a live source cannot be, so then every word that is said stands in a checkpoint first.
+constexpr size_t kSaveEvery = 25;
+
 std::string queueKey(const mapping::PieceKey& key, int32_t part) {
   std::string text = std::to_string(static_cast<int>(key.kind));
   for (const int32_t i : key.index) text += '/' + std::to_string(i);
   return text + '/' + std::to_string(part);
+}
+
+int64_t wallUs() {
+  return std::chrono::duration_cast<std::chrono::microseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
 }
 
 void writeOut(const std::string& folder, const mapping::LocalBelief& belief, double cell_size_m,
@@ -89,7 +99,9 @@ Agent::Agent(const AgentOptions& options, world::ObservationSource& source, comm
                  return piece.key.robot == options_.explorer.robot &&
                         sender_.queue().isWaiting(queueKey(piece.key, piece.part));
                }},
-              others_, sender_) {}
+              others_, sender_) {
+  if (options.resume) resume();
+}
 
 void Agent::run() {
   fly();
@@ -103,16 +115,32 @@ void Agent::run() {
 }
 
 void Agent::fly() {
+  if (!options_.resume) save();
+  int32_t skipped = 0;
   while (!stopRequested()) {
     awaitObservation();
     if (stopRequested()) break;
-    const auto observation = source_.next();
+    auto observation = source_.next();
     if (!observation) break;
-    passTimeUntil(options_.start_us + observation->time.us);
+    const int32_t last = explorer_.lastObservation();
+    if (options_.live) {  // a later life: its numbers and its time go on
+      if (path_.empty() || observation->number > last) {
+        observation->number += skipped;
+      } else {
+        skipped = last + 1 - observation->number;
+        observation->number = last + 1;
+      }
+      if (skipped > 0) observation->time.us += options_.start_us;
+    } else if (observation->number <= last) {
+      continue;  // learnt from in an earlier life
+    }
+    // What an earlier life had reached is caught up with at once.
+    passTimeUntil((options_.resume ? 0 : options_.start_us) + observation->time.us);
     takeIn(*observation);
     passTimeUntil(clock_.now());
   }
   publish();
+  save();
   if (stopRequested()) return;
   phase_ = wire::Phase::kLanded;
   spdlog::info("landed after {} observations: {} topics, {} cells, {:.1f} ms each", path_.size(),
@@ -136,6 +164,7 @@ void Agent::takeIn(const world::Observation& observation) {
   belief_ = explorer_.belief();
   path_.push_back({observation.time, observation.world_from_camera});
   if (path_.size() % kPublishEvery == 0) publish();
+  if (path_.size() % (options_.live ? kPublishEvery : kSaveEvery) == 0) save();
   const robot::StageTimes& t = explorer_.lastTimes();
   const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
   total_ms_ += took.count();
@@ -155,8 +184,7 @@ void Agent::publish() {
     for (const mapping::Piece& part : parts) {
       own_.apply(part);
       others_.apply(part);
-      sender_.offer(trafficOf(part.key.kind), queueKey(part.key, part.part),
-                    {channel, wire::encode(part, options_.mission, world::Timestamp{})});
+      offer(part);
     }
     int32_t& offered = num_parts_[whole.key];
     for (auto stale = static_cast<int32_t>(parts.size()); stale < offered; ++stale) {
@@ -164,6 +192,48 @@ void Agent::publish() {
     }
     offered = static_cast<int32_t>(parts.size());
   }
+}
+
+void Agent::offer(const mapping::Piece& part) {
+  sender_.offer(trafficOf(part.key.kind), queueKey(part.key, part.part),
+                {comms::channelName(name_, wire::channelKind(wire::kindOf(part))),
+                 wire::encode(part, options_.mission, world::Timestamp{})});
+}
+
+// As if there had been no crash: what was learnt, what was said, what was still to be said.
+void Agent::resume() {
+  const Checkpoint& c = *options_.resume;
+  explorer_.restore(c.explorer);
+  path_ = c.path;
+  if (!path_.empty()) {
+    belief_ = explorer_.belief();
+    changes_.update(belief_);  // all of it has been offered
+  }
+  for (const Checkpoint::Said& said : c.said) {
+    own_.apply(said.piece);
+    others_.apply(said.piece);
+    num_parts_[said.piece.key] = said.piece.num_parts;
+    if (said.waits) offer(said.piece);
+  }
+  spdlog::info("goes on from a checkpoint after {} observations, at {:.1f} s", path_.size(),
+               static_cast<double>(options_.start_us) * 1e-6);
+}
+
+// To be called when all that changed has been offered, and before any of it is sent.
+void Agent::save() {
+  if (options_.checkpoint_dir.empty()) return;
+  Checkpoint c{.mission = options_.mission,
+               .robot = options_.explorer.robot,
+               .epoch = options_.explorer.epoch,
+               .mission_us = clock_.now(),
+               .wall_us = wallUs(),
+               .explorer = explorer_.checkpoint(),
+               .said = {},
+               .path = path_};
+  own_.visit([&](const mapping::Piece& piece) {
+    c.said.push_back({piece, sender_.queue().isWaiting(queueKey(piece.key, piece.part))});
+  });
+  writeCheckpoint(checkpointPath(options_.checkpoint_dir, options_.explorer.robot), c);
 }
 
 // Sends what the budget allows and listens, until mission time `to_us`.
