@@ -6,6 +6,7 @@
 #include "shoal/comms/channels.h"
 #include "shoal/wire/message_kind.h"
 #include "shoal/wire/piece_codec.h"
+#include "shoal/wire/repair_codec.h"
 
 namespace shoal::fusion_node {
 namespace {
@@ -63,47 +64,63 @@ MissionState::MissionState(int32_t mission, const matching::MatcherOptions& matc
   matching::match(matching::DescriptorSet{}, matcher_);  // wrong options are the caller's mistake: say so now
 }
 
-void MissionState::hear(const comms::Packet& packet, comms::Stats& stats) {
+bool MissionState::hear(const comms::Packet& packet, comms::Stats& stats) {
+  const auto refuse = [&stats](std::string_view reason) {
+    stats.countRejected(reason);
+    return false;
+  };
   const auto channel = comms::parseChannel(packet.channel);
-  if (!channel) return stats.countRejected("channel");
+  if (!channel) return refuse("channel");
   const auto header = wire::peek(packet.bytes);
-  if (!header) return stats.countRejected(wire::name(header.error()));
-  if (wire::channelKind(header->kind) != channel->kind) return stats.countRejected("wrong type");
+  if (!header) return refuse(wire::name(header.error()));
+  if (wire::channelKind(header->kind) != channel->kind) return refuse("wrong type");
   if (header->mission != mission_) {
     if (other_missions_.size() < kMaxOtherMissions) other_missions_.insert(header->mission);
-    return stats.countRejected("other mission");
+    return refuse("other mission");
   }
   switch (header->kind) {
     case wire::MessageKind::kHeartbeat: {
       const auto heartbeat = wire::decodeHeartbeat(packet.bytes);
-      if (!heartbeat) return stats.countRejected(wire::name(heartbeat.error()));
+      if (!heartbeat) return refuse(wire::name(heartbeat.error()));
       if (!heartbeats_.contains(channel->node) && heartbeats_.size() >= kMaxNodes) {
-        return stats.countRejected("too many nodes");
+        return refuse("too many nodes");
       }
       wire::Heartbeat& held = heartbeats_[channel->node];
       const auto age = [](const wire::Heartbeat& h) { return std::pair(h.epoch, h.time); };
       if (age(*heartbeat) >= age(held)) held = *heartbeat;
       latest_ = std::max(latest_, heartbeat->time);
-      return;
+      return false;
     }
     case wire::MessageKind::kTopics:
     case wire::MessageKind::kBrick:
     case wire::MessageKind::kCertainty:
     case wire::MessageKind::kEdit: {
       const auto pieces = wire::decodePieces(header->kind, packet.bytes);
-      if (!pieces) return stats.countRejected(wire::name(pieces.error()));
+      if (!pieces) return refuse(wire::name(pieces.error()));
+      bool news = false;
       for (const mapping::Piece& piece : *pieces) {
         const bool is_edit = piece.key.robot == mapping::kOperators;  // whoever made it, any node may say it
-        if (!is_edit && name(piece.key.robot) != channel->node) return stats.countRejected("wrong sender");
-        const mapping::Applied applied = apply(piece);
-        if (applied == mapping::Applied::kConflict) stats.countRejected("conflict");
-        if (applied == mapping::Applied::kRejected) stats.countRejected("over limit");
+        if (!is_edit && name(piece.key.robot) != channel->node) return refuse("wrong sender");
+        if (take(piece, false, stats)) news = true;
       }
-      return;
+      return news;
+    }
+    case wire::MessageKind::kRepair: {  // whoever made it, any node may say it
+      const auto piece = wire::decodeRepair(packet.bytes);
+      if (!piece) return refuse(wire::name(piece.error()));
+      return take(*piece, true, stats);
     }
     default:
-      return;  // what fusion nodes publish for people is not part of the state
+      return false;  // what fusion nodes publish for people is not part of the state
   }
+}
+
+bool MissionState::take(const mapping::Piece& piece, bool repaired, comms::Stats& stats) {
+  const mapping::Applied applied = apply(piece);
+  if (on_piece_) on_piece_(piece, repaired);
+  if (applied == mapping::Applied::kConflict) stats.countRejected("conflict");
+  if (applied == mapping::Applied::kRejected) stats.countRejected("over limit");
+  return applied == mapping::Applied::kNew || applied == mapping::Applied::kPending;
 }
 
 mapping::Applied MissionState::apply(const mapping::Piece& piece) {

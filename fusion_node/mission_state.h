@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <set>
 #include <string>
@@ -36,10 +37,16 @@ class MissionState {
   MissionState(int32_t mission, const matching::MatcherOptions& matcher, double cell_size_m = 1.0);
 
   /// Takes a message in. Refusals are counted in `stats`.
-  void hear(const comms::Packet& packet, comms::Stats& stats);
+  /// @returns true when it holds state that was not held before.
+  bool hear(const comms::Packet& packet, comms::Stats& stats);
 
   /// Takes in a piece of one's own.
   mapping::Applied apply(const mapping::Piece& piece);
+
+  /// Calls `listener` with every piece that is heard from now on, and whether somebody said it again.
+  void onPiece(std::function<void(const mapping::Piece&, bool repaired)> listener) {
+    on_piece_ = std::move(listener);
+  }
 
   const mapping::BeliefStore& beliefs() const { return beliefs_; }
   const std::map<std::string, wire::Heartbeat>& heartbeats() const { return heartbeats_; }
@@ -76,6 +83,8 @@ class MissionState {
   const matching::MatcherOptions& matcher() const { return matcher_; }
 
  private:
+  bool take(const mapping::Piece& piece, bool repaired, comms::Stats& stats);
+
   int32_t mission_;
   matching::MatcherOptions matcher_;
   double cell_size_m_;
@@ -87,6 +96,7 @@ class MissionState {
   mapping::FusedMap fused_;
   mutable mapping::GlobalMap map_;  // of fused_, unless map_is_old_
   mutable bool map_is_old_ = false;
+  std::function<void(const mapping::Piece&, bool repaired)> on_piece_;
 };
 
 }  // namespace shoal::fusion_node

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include <spdlog/spdlog.h>
@@ -33,9 +34,13 @@ using Json = nlohmann::ordered_json;
 constexpr int64_t kFusePeriodMs = 200;
 constexpr int64_t kPublishPeriodMs = 1000;
 
+// Lists about the map are no part of the state, so nobody asks for them: they are repeated.
+constexpr int kListRepeats = 2;
+
 comms::SenderOptions senderOptions(int64_t budget, std::function<comms::Packet(int64_t)> make_heartbeat) {
   comms::SenderOptions options;
   options.bytes_per_s = budget;
+  options.queue.max_resends = kListRepeats;
   options.make_heartbeat = std::move(make_heartbeat);
   options.stamp = [](comms::Packet& packet, int64_t now_us) { wire::stampTime(packet.bytes, {now_us}); };
   return options;
@@ -50,8 +55,10 @@ Node::Node(const NodeOptions& options, comms::Bus& link, comms::Bus& local)
       local_(local),
       clock_(options.rate),
       sender_(link, &local,
-              senderOptions(options.budget, [this](int64_t now_us) { return heartbeat(now_us); })) {
+              senderOptions(options.budget, [this](int64_t now_us) { return heartbeat(now_us); })),
+      repair_({options.name, options.mission, options.budget, {}, true, {}}, state_, sender_) {
   if (!options.state_dir.empty()) {
+    recall();
     loadEdits();
     queries_.emplace(options.state_dir, [this](const Json& question) { return answer(question); });
   }
@@ -64,8 +71,7 @@ int64_t Node::wallMs() const {
 }
 
 void Node::turn(int timeout_ms) {
-  const auto hear = [this](const comms::Packet& packet) { state_.hear(packet, sender_.stats()); };
-  link_.receive(timeout_ms, hear);
+  link_.receive(timeout_ms, [this](const comms::Packet& packet) { hear(packet); });
   if (options_.rate == 0) clock_.advanceTo(state_.latestTime().us);
 
   const int64_t wall = wallMs();
@@ -93,8 +99,35 @@ void Node::turn(int timeout_ms) {
                                        world::Timestamp{}, limit("LABELS")));
   }
   if (state_.mapDigest() != published_digest_ && wall - published_at_ms_ >= kPublishPeriodMs) publishMap();
-  sender_.pump(clock_.now());
+  const int64_t now_us = clock_.now();
+  repair_.pump(now_us);
+  sender_.pump(now_us);
   if (queries_) queries_->poll();
+}
+
+void Node::hear(const comms::Packet& packet) {
+  const bool is_new = state_.hear(packet, sender_.stats());
+  try {
+    if (memory_) memory_->keep(packet, is_new, state_);
+  } catch (const std::exception& error) {  // a disk that is full must not end the mission
+    spdlog::error("{}; from now on what is heard is kept in memory alone", error.what());
+    memory_.reset();
+  }
+  repair_.hear(packet, clock_.now());
+}
+
+// Comes back with all that it had heard before it ended, however it did; its clock goes on.
+void Node::recall() {
+  memory_.emplace(options_.state_dir, options_.name, options_.mission);
+  const auto clock = memory_->recall(state_);
+  if (!clock) return;
+  const auto now_us = std::chrono::duration_cast<std::chrono::microseconds>(
+                          std::chrono::system_clock::now().time_since_epoch())
+                          .count();
+  const auto passed_us = options_.rate * static_cast<double>(std::max<int64_t>(now_us - clock->second, 0));
+  clock_.advanceTo(clock->first + std::llround(passed_us));
+  spdlog::info("comes back with {} pieces of {} robots, at {:.1f} s", state_.beliefs().numPieces(),
+               state_.beliefs().robots().size(), static_cast<double>(clock_.now()) * 1e-6);
 }
 
 void Node::publishMap() {
@@ -128,7 +161,7 @@ comms::Packet Node::heartbeat(int64_t now_us) {
   h.queue_bytes = static_cast<int32_t>(sender_.queue().waitingBytes());
   h.rejected = static_cast<int32_t>(std::min<uint64_t>(rejected, INT32_MAX));
   h.conflicts = state_.conflicts();
-  for (size_t i = 0; i < comms::kNumTrafficClasses; ++i) {
+  for (size_t i = 0; i < wire::Heartbeat::kNumClasses; ++i) {
     h.class_bytes[i] = static_cast<int64_t>(sender_.stats().sent[i].bytes);
   }
   h.roster = state_.roster();
@@ -188,8 +221,7 @@ Json Node::answer(const Json& question) {
 
 void Node::finish() {
   for (int turns = 0; turns < 50; ++turns) {  // what already waits in the socket
-    if (link_.receive(0, [this](const comms::Packet& packet) { state_.hear(packet, sender_.stats()); }) == 0)
-      break;
+    if (link_.receive(0, [this](const comms::Packet& packet) { hear(packet); }) == 0) break;
   }
   state_.refreshMap();
   publishMap();

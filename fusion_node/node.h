@@ -7,7 +7,9 @@
 #include <string>
 
 #include "fusion_node/mission_state.h"
+#include "fusion_node/node_memory.h"
 #include "fusion_node/query_server.h"
+#include "fusion_node/repair.h"
 #include "shoal/comms/bus.h"
 #include "shoal/comms/mission_clock.h"
 #include "shoal/comms/sender.h"
@@ -27,7 +29,8 @@ struct NodeOptions {
 
 /// A fusion node: hears everybody, fuses when something changed, tells the link what matches what and the
 /// local bus how the map looks, answers questions, and says what its operator decided: edits are kept in
-/// `edits.json` of the state folder before they are acknowledged, and come back from there.
+/// `edits.json` of the state folder before they are acknowledged, and come back from there. So does all that
+/// it had heard: NodeMemory.
 class Node {
  public:
   /// `link` and `local` outlive the node.
@@ -45,6 +48,8 @@ class Node {
 
  private:
   comms::Packet heartbeat(int64_t now_us);
+  void hear(const comms::Packet& packet);
+  void recall();
   void publishMap();
   nlohmann::ordered_json answer(const nlohmann::ordered_json& question);
   nlohmann::ordered_json answerEdit(const nlohmann::ordered_json& question);
@@ -58,6 +63,8 @@ class Node {
   comms::Bus& local_;
   comms::MissionClock clock_;
   comms::Sender sender_;
+  Repair repair_;
+  std::optional<NodeMemory> memory_;
   std::optional<QueryServer> queries_;
   std::map<std::string, size_t> num_chunks_;  // in the send queue, by channel
   uint64_t published_digest_ = 0;

@@ -24,9 +24,14 @@ using Json = nlohmann::ordered_json;
 Json bytesByClass(const RunInfo& run) {
   Json bytes = Json::object();
   for (const auto& [node, heartbeat] : run.last_heartbeats) {
-    for (size_t i = 0; i < comms::kNumTrafficClasses; ++i) {
+    // Of what nodes do to repair the state, a heartbeat holds the sum alone: the rest of all bytes.
+    int64_t rest = heartbeat.bytes_sent;
+    for (size_t i = 0; i < wire::Heartbeat::kNumClasses; ++i) {
       bytes[node][std::string(comms::kTrafficClassNames[i])] = heartbeat.class_bytes[i];
+      if (static_cast<comms::TrafficClass>(i) != comms::TrafficClass::kLocal)
+        rest -= heartbeat.class_bytes[i];
     }
+    bytes[node]["repair"] = std::max<int64_t>(rest, 0);
   }
   return bytes;
 }

@@ -27,8 +27,8 @@ std::vector<KillStep> readKillPlan(const std::string& path, int num_robots) {
     if (!(words >> std::ws) || words.eof() || words.peek() == '#') continue;
     KillStep step;
     const bool read = static_cast<bool>(words >> step.at_s >> robot >> what) && !(words >> more);
-    if (!read || (what != "kill" && what != "restart")) {
-      refuse(line, "\"" + text + "\" should be `t_s ROBOT kill` or `t_s ROBOT restart`");
+    if (!read || (what != "kill" && what != "restart" && what != "anew")) {
+      refuse(line, "\"" + text + "\" should be `t_s ROBOT kill`, `t_s ROBOT restart` or `t_s ROBOT anew`");
     }
     if (!(step.at_s >= 0 && step.at_s <= 1e6)) refuse(line, "the time must lie in [0, 1000000] s");
     const auto id = world::parseRobotId(robot);
@@ -37,7 +37,8 @@ std::vector<KillStep> readKillPlan(const std::string& path, int num_robots) {
                        world::name(world::RobotId{num_robots - 1}));
     }
     step.robot = *id;
-    step.restart = what == "restart";
+    step.restart = what != "kill";
+    step.anew = what == "anew";
     const auto before = last.find(step.robot);
     const bool is_dead = before != last.end() && !before->second.step.restart;
     if (step.restart && !is_dead) refuse(line, robot + " is restarted and was not killed before");

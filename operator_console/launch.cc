@@ -23,6 +23,7 @@
 #include "operator_console/mission_commands.h"
 #include "operator_console/mission_watch.h"
 #include "operator_console/progress.h"
+#include "operator_console/recording_repair.h"
 #include "operator_console/stop_signal.h"
 #include "operator_console/supervisor.h"
 #include "shoal/comms/kernel_limits.h"
@@ -30,6 +31,7 @@
 #include "shoal/comms/lcm_url.h"
 #include "shoal/comms/link_model.h"
 #include "shoal/random.h"
+#include "shoal/wire/message_kind.h"
 
 namespace shoal::console {
 namespace {
@@ -46,6 +48,7 @@ constexpr seconds kWriting{60};            // for writing files at the end
 constexpr seconds kStarting{20};           // for the logger and the fusion node to be there
 constexpr milliseconds kLoggerFlush{500};  // lcm-logger flushes every 100 ms
 constexpr milliseconds kLogCheck{2000};    // between two looks at the recording
+constexpr int kMaxCrashes = 3;             // of one process, unplanned
 
 struct Interrupted {
   int signal;
@@ -106,6 +109,9 @@ class Mission {
   void startAll();
   void turn();
   void checkEnded(const Ended& ended);
+  bool comesBack(const Ended& ended);
+  void restart(world::RobotId robot, double start_s, const char* why);
+  bool isHeard(const std::string& name) const;
   void followPlan();
   bool isDue(const KillStep& step) const;
   std::vector<std::string> notBack() const;
@@ -113,6 +119,7 @@ class Mission {
   bool turnUntil(Clock::duration limit, Done&& done);
   std::vector<std::string> settle();
   std::vector<std::string> settleRecording();
+  void askForRecording();
   void stop(const std::vector<std::string>& names, int signal, const char* doing);
   void stopTeam();
   std::string singleProgress() const;
@@ -122,6 +129,8 @@ class Mission {
   std::vector<KillStep> plan_;            // still to come
   std::map<world::RobotId, int> epochs_;  // of robots that began anew
   std::set<std::string> crashing_;        // killed by the plan, not gone yet
+  std::set<std::string> restarted_;       // by plan or after a crash
+  std::map<std::string, int> crashes_;    // unplanned
   comms::LcmBus bus_;
   MissionWatch watch_;
   Supervisor children_;
@@ -129,6 +138,7 @@ class Mission {
   Clock::time_point started_, drawn_;
   std::set<std::string> may_end_ = {"single"};  // in good order
   std::string doing_ = "starting";
+  double asked_at_s_ = 0;  // mission time
 };
 
 // Listens, redraws, and throws when the mission cannot go on.
@@ -153,11 +163,11 @@ void Mission::followPlan() {
     if (!looked_at.insert(step.robot).second || !isDue(step)) return false;
     const std::string name = world::name(step.robot);
     if (step.restart) {
-      const int epoch = ++epochs_[step.robot];
-      // Its clock goes on: two lives in the same mission time would both spend its budget.
-      const double start_s = std::max(step.at_s, watch_.lastSentAt(name));
-      spdlog::info("{} begins anew at {:.1f} s, as planned", name, start_s);
-      children_.start(robotCommand(options_, number(step.robot), epoch, start_s));
+      if (step.anew) {
+        fs::remove(checkpointDir(options_) + "/" + name + ".checkpoint");
+        ++epochs_[step.robot];
+      }
+      restart(step.robot, std::max(step.at_s, watch_.lastSentAt(name)), "as planned");
     } else {
       spdlog::info("{} is killed at {:.1f} s, as planned", name, watch_.lastSentAt(name));
       crashing_.insert(name);
@@ -167,35 +177,63 @@ void Mission::followPlan() {
   });
 }
 
+// Its clock goes on: two lives in the same mission time would both spend its budget.
+void Mission::restart(world::RobotId robot, double start_s, const char* why) {
+  const std::string name = world::name(robot);
+  const auto epoch = epochs_.find(robot);
+  start_s = std::max(start_s, 1e-6);
+  spdlog::info("{} {} at {:.1f} s, {}", name, epoch == epochs_.end() ? "comes back" : "begins anew", start_s,
+               why);
+  children_.start(robotCommand(options_, number(robot), epoch == epochs_.end() ? 0 : epoch->second, start_s));
+  restarted_.insert(name);
+}
+
 // A robot is killed by its own clock, and comes back by that of who is furthest; or at once when everybody
 // else has landed, for then there is nothing to wait for.
 bool Mission::isDue(const KillStep& step) const {
   const std::string name = world::name(step.robot);
   if (!step.restart) {
-    const auto heard = watch_.nodes().find(name);
-    const auto epoch = epochs_.find(step.robot);
-    return heard != watch_.nodes().end() &&
-           heard->second.epoch == (epoch == epochs_.end() ? 0 : epoch->second) &&
-           heard->second.time.seconds() >= step.at_s;
+    return isHeard(name) && watch_.nodes().at(name).time.seconds() >= step.at_s;
   }
   if (children_.isRunning(name)) return false;
   return watch_.missionTime() >= step.at_s || watch_.allLanded(name);
 }
 
-// Robots that began anew and were not heard since.
+// Whether the last heartbeat of that name is of the process that runs now.
+bool Mission::isHeard(const std::string& name) const {
+  const auto heard = watch_.nodes().find(name);
+  return heard != watch_.nodes().end() && heard->second.pid == children_.pidOf(name);
+}
+
+// Processes that were started again and not heard since.
 std::vector<std::string> Mission::notBack() const {
   std::vector<std::string> names;
-  for (const auto& [robot, epoch] : epochs_) {
-    const auto heard = watch_.nodes().find(world::name(robot));
-    if (heard == watch_.nodes().end() || heard->second.epoch != epoch) {
-      names.push_back(world::name(robot) + " was not heard since it began anew");
-    }
+  for (const std::string& name : restarted_) {
+    if (!isHeard(name) && !may_end_.contains(name))
+      names.push_back(name + " was not heard since it came back");
   }
   return names;
 }
 
+// A process that crashed (a fragment on the network can crash liblcm) comes back from what it kept.
+bool Mission::comesBack(const Ended& ended) {
+  const auto robot = world::parseRobotId(ended.name);
+  if (!ended.crashed() || may_end_.contains(ended.name) || (!robot && ended.name != "OPERATOR")) return false;
+  if (++crashes_[ended.name] > kMaxCrashes) return false;
+  spdlog::warn("{} {}", ended.name, ended.how());
+  if (robot) {
+    restart(*robot, watch_.lastSentAt(ended.name), "from its checkpoint");
+  } else {
+    Command again = operatorCommand(options_);
+    again.goes_on = true;
+    children_.start(again);
+    restarted_.insert(ended.name);
+  }
+  return true;
+}
+
 void Mission::checkEnded(const Ended& ended) {
-  if (crashing_.erase(ended.name) > 0) return;
+  if (crashing_.erase(ended.name) > 0 || comesBack(ended)) return;
   if (may_end_.contains(ended.name) && ended.inGoodOrder()) return;
   std::string message = ended.name + " " + ended.how() + (may_end_.contains(ended.name) ? "" : " too early");
   const auto lines = lastLines(ended.log, 10);
@@ -265,7 +303,25 @@ std::vector<std::string> Mission::settle() {
   }
 }
 
-// Until the recording alone adds up to the state: what it missed, robots say again.
+// Asks for what the recording lacks, within a node's budget.
+void Mission::askForRecording() {
+  const size_t most =
+      options_.budget == 0 ? 1000 : std::clamp<size_t>(static_cast<size_t>(options_.budget) / 2, 100, 1000);
+  for (comms::Packet& packet :
+       requestsForRecording(recordingPath(options_), options_.mission, watch_.nodes(), most)) {
+    const double pause_s = options_.budget == 0
+                               ? 0.1
+                               : std::max(1.1, 1.1 * static_cast<double>(comms::wireSize(packet)) /
+                                                   static_cast<double>(options_.budget));
+    const bool passed = turnUntil(kLogCheck, [&] { return watch_.missionTime() > asked_at_s_ + pause_s; });
+    if (!passed) return;  // mission time stands still: somebody else will be missed first
+    asked_at_s_ = watch_.missionTime();
+    wire::stampTime(packet.bytes, {std::llround(asked_at_s_ * 1e6)});
+    bus_.publish(packet);
+  }
+}
+
+// Until the recording alone adds up to the state: what it missed, whoever holds it says again.
 std::vector<std::string> Mission::settleRecording() {
   doing_ = "landed; the recording is checked";
   const auto deadline = Clock::now() + std::chrono::duration<double>(options_.settle_timeout_s);
@@ -274,6 +330,7 @@ std::vector<std::string> Mission::settleRecording() {
     const auto lacking =
         lackingInLog(recordingPath(options_), options_.mission, watch_.stateDigest(), watch_.nodes());
     if (lacking.empty() || Clock::now() >= deadline) return lacking;
+    askForRecording();
     turnUntil(kLogCheck, [] { return false; });
   }
 }

@@ -7,6 +7,7 @@
 #include "shoal/comms/log_reader.h"
 #include "shoal/wire/message_kind.h"
 #include "shoal/wire/piece_codec.h"
+#include "shoal/wire/repair_codec.h"
 #include "shoal/world/ids.h"
 
 namespace shoal::console {
@@ -19,6 +20,10 @@ PieceAudit auditOf(const std::string& path, int32_t mission) {
     const auto header = wire::peek(event->packet.bytes);
     const auto channel = comms::parseChannel(event->packet.channel);
     if (!header || !channel || header->mission != mission) continue;
+    if (header->kind == wire::MessageKind::kRepair) {
+      if (const auto repaired = wire::decodeRepair(event->packet.bytes)) pieces.hear(*repaired);
+      continue;
+    }
     const auto heard = wire::decodePieces(header->kind, event->packet.bytes);
     if (!heard) continue;
     for (const mapping::Piece& piece : *heard)

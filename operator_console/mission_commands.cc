@@ -82,11 +82,9 @@ Command robotCommand(const LaunchOptions& options, int robot, int epoch, double 
   std::vector<std::string> arguments = {"--robot", name};
   append(arguments, flightArguments(options));
   append(arguments, linkArguments(options));
-  append(arguments, {"--out", options.out, "--linger"});
-  if (epoch == 0) return {name, programBeside("robot_agent"), arguments, logPath(options, name)};
+  append(arguments, {"--out", options.out, "--linger", "--checkpoint", checkpointDir(options)});
   append(arguments, {"--epoch", std::to_string(epoch), "--start-s", text(start_s)});
-  return {name, programBeside("robot_agent"), arguments,
-          logPath(options, name + "_epoch" + std::to_string(epoch))};
+  return {name, programBeside("robot_agent"), arguments, logPath(options, name), start_s > 0};
 }
 
 Command singleCommand(const LaunchOptions& options) {
@@ -99,5 +97,7 @@ Command singleCommand(const LaunchOptions& options) {
 std::string recordingPath(const LaunchOptions& options) { return options.out + "/mission.lcmlog"; }
 
 std::string operatorStateDir(const LaunchOptions& options) { return options.out + "/state"; }
+
+std::string checkpointDir(const LaunchOptions& options) { return operatorStateDir(options) + "/robots"; }
 
 }  // namespace shoal::console

@@ -16,8 +16,8 @@ namespace shoal::console {
 /// lcm-logger into mission.lcmlog, which must not be there.
 Command loggerCommand(const LaunchOptions& options);
 Command operatorCommand(const LaunchOptions& options);
-/// @param epoch    how often it has begun anew; what it logs goes to logs/RNN_epoch<n>.log when it has.
-/// @param start_s  mission time at which it begins.
+/// @param epoch    how often it has begun anew
+/// @param start_s  mission time at which it begins; above 0 it has been running before, and its log goes on
 Command robotCommand(const LaunchOptions& options, int robot, int epoch = 0, double start_s = 0);
 /// One robot that flies everybody's shares alone, off the link and as fast as it can.
 Command singleCommand(const LaunchOptions& options);
@@ -25,5 +25,7 @@ Command singleCommand(const LaunchOptions& options);
 /// Files of a mission.
 std::string recordingPath(const LaunchOptions& options);
 std::string operatorStateDir(const LaunchOptions& options);
+/// Where robots keep their checkpoints.
+std::string checkpointDir(const LaunchOptions& options);
 
 }  // namespace shoal::console

@@ -63,6 +63,8 @@ bool canRun(const std::string& path) {
 
 bool Ended::inGoodOrder() const { return WIFEXITED(status) && WEXITSTATUS(status) == 0; }
 
+bool Ended::crashed() const { return WIFSIGNALED(status); }
+
 std::string Ended::how() const {
   if (WIFSIGNALED(status)) {
     const int signal = WTERMSIG(status);
@@ -75,7 +77,7 @@ Supervisor::~Supervisor() { stopAll(std::chrono::milliseconds(0)); }
 
 void Supervisor::start(const Command& command) {
   if (!canRun(command.program)) throw std::runtime_error("cannot run " + command.program);
-  const File log(command.log, O_WRONLY | O_CREAT | O_TRUNC | O_APPEND);
+  const File log(command.log, O_WRONLY | O_CREAT | (command.goes_on ? 0 : O_TRUNC) | O_APPEND);
   const File null("/dev/null", O_RDONLY);
   std::vector<std::string> words = command.arguments;
   words.insert(words.begin(), command.program);
@@ -133,6 +135,11 @@ std::vector<Ended> Supervisor::stopAll(std::chrono::milliseconds patience) {
 
 bool Supervisor::isRunning(const std::string& name) const {
   return std::ranges::find(running_, name, &Child::name) != running_.end();
+}
+
+pid_t Supervisor::pidOf(const std::string& name) const {
+  const auto child = std::ranges::find(running_, name, &Child::name);
+  return child == running_.end() ? 0 : child->pid;
 }
 
 std::string programBeside(const std::string& name) {

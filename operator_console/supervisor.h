@@ -15,7 +15,8 @@ struct Command {
   std::string name;     ///< what people call it: "R03"
   std::string program;  ///< path of the executable
   std::vector<std::string> arguments;
-  std::string log;  ///< file that gets its stdout and stderr; made anew
+  std::string log;       ///< file that gets its stdout and stderr; made anew ...
+  bool goes_on = false;  ///< ... unless the program has been running before
 };
 
 /// A child that is no more.
@@ -25,6 +26,7 @@ struct Ended {
   int status = 0;  ///< as waitpid() says
 
   bool inGoodOrder() const;  ///< exited with 0
+  bool crashed() const;      ///< ended by a signal
   std::string how() const;   ///< "exited with code 1", "was killed by signal 11 (Segmentation fault)"
 };
 
@@ -56,6 +58,7 @@ class Supervisor {
 
   size_t numRunning() const { return running_.size(); }
   bool isRunning(const std::string& name) const;
+  pid_t pidOf(const std::string& name) const;  ///< 0 when it does not run
 
  private:
   struct Child {

@@ -15,6 +15,7 @@
 #include "shoal/mapping/belief_files.h"
 #include "shoal/mapping/map_files.h"
 #include "shoal/wire/piece_codec.h"
+#include "shoal/wire/repair_codec.h"
 
 namespace shoal::robot_agent {
 namespace {
@@ -49,6 +50,10 @@ constexpr size_t kPieceOverheadBytes = 110;
 // images, and at the end. A count, so that what is said does not depend on how fast the robot flew.
 constexpr size_t kPublishEvery = 5;
 
+// A multiple of that. What was flown since the last checkpoint is flown again after a crash, with the same
+// result; a live source cannot be, so then every word that is said stands in a checkpoint first.
+constexpr size_t kSaveEvery = 25;
+
 std::string queueKey(const mapping::PieceKey& key, int32_t part) {
   std::string text = std::to_string(static_cast<int>(key.kind));
   for (const int32_t i : key.index) text += '/' + std::to_string(i);
@@ -58,7 +63,14 @@ std::string queueKey(const mapping::PieceKey& key, int32_t part) {
 // Bytes of a message on a channel that carry most under a thin budget: comms/budget.h.
 size_t mostBytes(const std::string& channel, int64_t budget) {
   const size_t best = comms::efficientDatagram(budget, kPieceOverheadBytes);
-  return std::min(wire::maxPayload(channel.size()), best - comms::wireSize(channel.size(), 0));
+  const size_t most = std::min(wire::maxPayload(channel.size()), wire::kMaxRepairableBytes);
+  return std::min(most, best - comms::wireSize(channel.size(), 0));
+}
+
+int64_t wallUs() {
+  return std::chrono::duration_cast<std::chrono::microseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
 }
 
 void writeOut(const std::string& folder, const mapping::LocalBelief& belief, double cell_size_m,
@@ -78,17 +90,28 @@ Agent::Agent(const AgentOptions& options, world::ObservationSource& source, comm
       belief_{.robot = options.explorer.robot, .version = {}, .groups = {}, .topics = {}, .cells = {}},
       others_(options.mission, options.matcher),
       clock_(options.rate, options.start_us),
-      sender_(bus, nullptr, [&] {
-        comms::SenderOptions sender;
-        sender.bytes_per_s = options.budget;
-        sender.stamp = [](comms::Packet& packet, int64_t now_us) { wire::stampTime(packet.bytes, {now_us}); };
-        sender.join = [this](std::span<const comms::SendQueue::Next> together) { return join(together); };
-        sender.most_joined_bytes = mostBytes(
-            comms::channelName(name_, wire::channelKind(wire::MessageKind::kCertainty)), options.budget);
-        if (options.start_us > 0) sender.resumed_at_us = options.start_us;
-        sender.make_heartbeat = [this](int64_t now_us) { return heartbeat(now_us); };
-        return sender;
-      }()) {}
+      sender_(bus, nullptr,
+              [&] {
+                comms::SenderOptions sender;
+                sender.bytes_per_s = options.budget;
+                sender.stamp = [](comms::Packet& packet, int64_t now_us) {
+                  wire::stampTime(packet.bytes, {now_us});
+                };
+                sender.join = [this](std::span<const comms::SendQueue::Next> together) { return join(together); };
+                sender.most_joined_bytes = mostBytes(
+                    comms::channelName(name_, wire::channelKind(wire::MessageKind::kCertainty)), options.budget);
+                if (options.start_us > 0) sender.resumed_at_us = options.start_us;
+                sender.make_heartbeat = [this](int64_t now_us) { return heartbeat(now_us); };
+                return sender;
+              }()),
+      repair_({name_, options.mission, options.budget, number(options.explorer.robot), options.fuse,
+               [this](const mapping::Piece& piece) {
+                 return piece.key.robot == options_.explorer.robot &&
+                        sender_.queue().isWaiting(queueKey(piece.key, piece.part));
+               }},
+              others_, sender_) {
+  if (options.resume) resume();
+}
 
 void Agent::run() {
   fly();
@@ -102,16 +125,32 @@ void Agent::run() {
 }
 
 void Agent::fly() {
+  if (!options_.resume) save();
+  int32_t skipped = 0;
   while (!stopRequested()) {
     awaitObservation();
     if (stopRequested()) break;
-    const auto observation = source_.next();
+    auto observation = source_.next();
     if (!observation) break;
-    passTimeUntil(options_.start_us + observation->time.us);
+    const int32_t last = explorer_.lastObservation();
+    if (options_.live) {  // a later life: its numbers and its time go on
+      if (path_.empty() || observation->number > last) {
+        observation->number += skipped;
+      } else {
+        skipped = last + 1 - observation->number;
+        observation->number = last + 1;
+      }
+      if (skipped > 0) observation->time.us += options_.start_us;
+    } else if (observation->number <= last) {
+      continue;  // learnt from in an earlier life
+    }
+    // What an earlier life had reached is caught up with at once.
+    passTimeUntil((options_.resume ? 0 : options_.start_us) + observation->time.us);
     takeIn(*observation);
     passTimeUntil(clock_.now());
   }
   publish();
+  save();
   if (stopRequested()) return;
   phase_ = wire::Phase::kLanded;
   spdlog::info("landed after {} observations: {} topics, {} cells, {:.1f} ms each", path_.size(),
@@ -122,7 +161,9 @@ void Agent::fly() {
 // Sends and listens meanwhile. Mission time as fast as possible does not pass: only observations move it.
 void Agent::awaitObservation() {
   while (!stopRequested() && !source_.ready()) {
-    sender_.pump(clock_.now());
+    const int64_t now = clock_.now();
+    repair_.pump(now);
+    sender_.pump(now);
     listen(kAwaitMs);
   }
 }
@@ -133,6 +174,7 @@ void Agent::takeIn(const world::Observation& observation) {
   belief_ = explorer_.belief();
   path_.push_back({observation.time, observation.world_from_camera});
   if (path_.size() % kPublishEvery == 0) publish();
+  if (path_.size() % (options_.live ? kPublishEvery : kSaveEvery) == 0) save();
   const robot::StageTimes& t = explorer_.lastTimes();
   const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
   total_ms_ += took.count();
@@ -148,11 +190,8 @@ void Agent::publish() {
     const auto parts = wire::cutToFit(whole, mostBytes(channel, options_.budget));
     for (const mapping::Piece& part : parts) {
       own_.apply(part);
-      if (options_.fuse) others_.apply(part);
-      const std::string key = queueKey(part.key, part.part);
-      sender_.offer(trafficOf(part.key.kind), key,
-                    {channel, wire::encode(part, options_.mission, world::Timestamp{})});
-      said_.insert_or_assign(key, part);
+      others_.apply(part);
+      offer(part);
     }
     int32_t& offered = num_parts_[whole.key];
     for (auto stale = static_cast<int32_t>(parts.size()); stale < offered; ++stale) {
@@ -166,17 +205,66 @@ void Agent::publish() {
 // Bricks that wait share datagrams.
 std::optional<comms::Packet> Agent::join(std::span<const comms::SendQueue::Next> together) const {
   std::vector<const mapping::Piece*> pieces;
-  for (const comms::SendQueue::Next& each : together) pieces.push_back(&said_.find(each.key)->second);
+  for (const comms::SendQueue::Next& each : together) {
+    const auto said = said_.find(each.key);
+    if (said == said_.end()) return std::nullopt;  // a request or a repair
+    pieces.push_back(&said->second);
+  }
   auto bytes = wire::encodeTogether(pieces, options_.mission);
   if (!bytes) return std::nullopt;
   return comms::Packet{together.front().packet->channel, std::move(*bytes)};
+}
+
+void Agent::offer(const mapping::Piece& part) {
+  const std::string key = queueKey(part.key, part.part);
+  sender_.offer(trafficOf(part.key.kind), key,
+                {comms::channelName(name_, wire::channelKind(wire::kindOf(part))),
+                 wire::encode(part, options_.mission, world::Timestamp{})});
+  said_.insert_or_assign(key, part);
+}
+
+// As if there had been no crash: what was learnt, what was said, what was still to be said.
+void Agent::resume() {
+  const Checkpoint& c = *options_.resume;
+  explorer_.restore(c.explorer);
+  path_ = c.path;
+  if (!path_.empty()) {
+    belief_ = explorer_.belief();
+    changes_.update(belief_);  // all of it has been offered
+  }
+  for (const Checkpoint::Said& said : c.said) {
+    own_.apply(said.piece);
+    others_.apply(said.piece);
+    num_parts_[said.piece.key] = said.piece.num_parts;
+    if (said.waits) offer(said.piece);
+  }
+  spdlog::info("goes on from a checkpoint after {} observations, at {:.1f} s", path_.size(),
+               static_cast<double>(options_.start_us) * 1e-6);
+}
+
+// To be called when all that changed has been offered, and before any of it is sent.
+void Agent::save() {
+  if (options_.checkpoint_dir.empty()) return;
+  Checkpoint c{.mission = options_.mission,
+               .robot = options_.explorer.robot,
+               .epoch = options_.explorer.epoch,
+               .mission_us = clock_.now(),
+               .wall_us = wallUs(),
+               .explorer = explorer_.checkpoint(),
+               .said = {},
+               .path = path_};
+  own_.visit([&](const mapping::Piece& piece) {
+    c.said.push_back({piece, sender_.queue().isWaiting(queueKey(piece.key, piece.part))});
+  });
+  writeCheckpoint(checkpointPath(options_.checkpoint_dir, options_.explorer.robot), c);
 }
 
 // Sends what the budget allows and listens, until mission time `to_us`.
 void Agent::passTimeUntil(int64_t to_us) {
   while (!stopRequested()) {
     const int64_t now = clock_.now();
-    const int64_t next = std::min(sender_.pump(now), to_us);
+    const int64_t repair_due = repair_.pump(now);
+    const int64_t next = std::min({sender_.pump(now), repair_due, to_us});
     const auto wait_ms = static_cast<int>(std::min<int64_t>(clock_.wallUntil(next) / 1000, 50));
     listen(wait_ms);
     if (now >= to_us) return;
@@ -186,8 +274,8 @@ void Agent::passTimeUntil(int64_t to_us) {
 
 void Agent::listen(int timeout_ms) {
   bus_.receive(timeout_ms, [this](const comms::Packet& packet) {
-    if (!options_.fuse && !packet.channel.ends_with("_HEARTBEAT")) return;
     others_.hear(packet, sender_.stats());
+    repair_.hear(packet, clock_.now());
   });
   if (options_.fuse && phase_ != wire::Phase::kFlying) others_.refresh();
   for (; warned_of_missions_ < others_.otherMissions().size(); ++warned_of_missions_) {
@@ -220,7 +308,8 @@ void Agent::linger() {
 bool Agent::isHeard() const {
   bool heard = false;
   for (const auto& [node, heartbeat] : others_.heartbeats()) {
-    if (node == name_ || heartbeat.roster.empty()) continue;
+    const bool fuses = heartbeat.phase == wire::Phase::kNode || heartbeat.map_of_state != 0;
+    if (node == name_ || !fuses || heartbeat.roster.empty()) continue;
     const auto mine =
         std::ranges::find(heartbeat.roster, options_.explorer.robot, &wire::Heartbeat::Share::robot);
     if (mine == heartbeat.roster.end() ||
@@ -261,8 +350,8 @@ comms::Packet Agent::heartbeat(int64_t now_us) {
   if (options_.fuse) {
     h.map_digest = others_.mapDigest();
     h.map_of_state = others_.fused().stateDigest();
-    h.roster = others_.roster();
   }
+  h.roster = repair_.roster(now_us);
   h.vocabulary = explorer_.fingerprint();
   h.host = fusion_node::hostHash();
   h.pid = ::getpid();
@@ -278,7 +367,7 @@ comms::Packet Agent::heartbeat(int64_t now_us) {
   h.rejected = static_cast<int32_t>(std::min<uint64_t>(rejected, INT32_MAX));
   h.conflicts = others_.conflicts() + (warned_of_twin_ ? 1 : 0);
   h.ms_per_frame = path_.empty() ? 0.f : static_cast<float>(total_ms_ / static_cast<double>(path_.size()));
-  for (size_t i = 0; i < comms::kNumTrafficClasses; ++i) {
+  for (size_t i = 0; i < wire::Heartbeat::kNumClasses; ++i) {
     h.class_bytes[i] = static_cast<int64_t>(sender_.stats().sent[i].bytes);
   }
   const std::string channel = comms::channelName(name_, "HEARTBEAT");

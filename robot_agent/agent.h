@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "fusion_node/mission_state.h"
+#include "fusion_node/repair.h"
+#include "robot_agent/checkpoint.h"
 #include "shoal/comms/bus.h"
 #include "shoal/comms/mission_clock.h"
 #include "shoal/comms/sender.h"
@@ -29,7 +31,10 @@ struct AgentOptions {
   bool fuse = false;      ///< hold everybody's beliefs and fuse them too
   matching::MatcherOptions matcher = matching::usualMatcher();  ///< for `fuse`
   std::string out_dir;                                          ///< where robots/RNN/ goes; empty = nowhere
-  bool linger = false;  ///< stay after landing until told to stop, heard or not
+  bool linger = false;               ///< stay after landing until told to stop, heard or not
+  std::string checkpoint_dir;        ///< where checkpoints go; empty = nowhere
+  std::optional<Checkpoint> resume;  ///< what to go on from, of this mission, robot and epoch
+  bool live = false;                 ///< what the source has shown it will not show again
 };
 
 /// One robot: flies its source, learns, tells the others under its budget, and listens.
@@ -48,8 +53,11 @@ class Agent {
   void fly();
   void awaitObservation();
   void linger();
+  void resume();
+  void save();
   void takeIn(const world::Observation& observation);
   void publish();
+  void offer(const mapping::Piece& part);
   void passTimeUntil(int64_t to_us);
   void listen(int timeout_ms);
   bool isHeard() const;
@@ -70,6 +78,7 @@ class Agent {
   fusion_node::MissionState others_;
   comms::MissionClock clock_;
   comms::Sender sender_;
+  fusion_node::Repair repair_;
   std::vector<mapping::StampedPose> path_;
   wire::Phase phase_ = wire::Phase::kFlying;
   double total_ms_ = 0;

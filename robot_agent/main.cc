@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -18,6 +21,7 @@
 #include "shoal/comms/camera_channels.h"
 #include "shoal/comms/lcm_bus.h"
 #include "shoal/comms/lcm_url.h"
+#include "shoal/mapping/atomic_file.h"
 #include "shoal/version.h"
 #include "shoal/world/place.h"
 
@@ -102,6 +106,42 @@ void sayTroubles(const world::ObservationSource& source) {
     spdlog::warn("left out: {}", troubles);
 }
 
+/// The robot as it was when it last wrote a checkpoint; in a new epoch when it has lost that and knows that
+/// it had one.
+void resume(Flags& flags, world::RobotId id) {
+  robot_agent::AgentOptions& options = flags.agent;
+  options.checkpoint_dir = flags.checkpoint;
+  const std::string path = robot_agent::checkpointPath(flags.checkpoint, id);
+  const std::string epoch_path = flags.checkpoint + "/" + name(id) + ".epoch";
+  std::optional<robot_agent::Checkpoint> checkpoint;
+  try {
+    checkpoint = robot_agent::readCheckpoint(path);
+  } catch (const std::runtime_error& error) {
+    spdlog::error("{}; it begins anew", error.what());
+  }
+  if (checkpoint && checkpoint->epoch < options.explorer.epoch) checkpoint.reset();  // told to begin anew
+  if (checkpoint && (checkpoint->mission != options.mission || checkpoint->robot != id)) {
+    throw std::invalid_argument("--checkpoint " + flags.checkpoint + " holds another mission (" +
+                                std::to_string(checkpoint->mission) + "); name another folder");
+  }
+  if (checkpoint) {
+    options.explorer.epoch = checkpoint->epoch;
+    const auto now_us = std::chrono::duration_cast<std::chrono::microseconds>(
+                            std::chrono::system_clock::now().time_since_epoch())
+                            .count();
+    const double passed_us =
+        options.rate * static_cast<double>(std::max<int64_t>(now_us - checkpoint->wall_us, 0));
+    options.start_us =
+        std::max({options.start_us, checkpoint->mission_us + std::llround(passed_us), int64_t{1}});
+    options.resume = std::move(checkpoint);
+  } else if (std::filesystem::exists(epoch_path)) {
+    const int32_t before = std::stoi(mapping::readFile(epoch_path));
+    options.explorer.epoch = std::max(options.explorer.epoch, before + 1);
+    spdlog::warn("the checkpoint of epoch {} is lost: epoch {} begins", before, options.explorer.epoch);
+  }
+  mapping::writeFileAtomically(epoch_path, std::to_string(options.explorer.epoch) + "\n");
+}
+
 int run(Flags flags) {
   robot_agent::AgentOptions& options = flags.agent;
   const auto id = world::parseRobotId(flags.robot);
@@ -110,11 +150,12 @@ int run(Flags flags) {
     throw std::invalid_argument("robot " + flags.robot + " is not of a team of " +
                                 std::to_string(flags.survey.num_robots) + "; raise --robots");
   }
-  if (!flags.checkpoint.empty()) throw std::invalid_argument("--checkpoint is not built yet");
   options.explorer.robot = *id;
   options.mission = fusion_node::missionId(flags.mission);
   options.rate = fusion_node::parseRate(flags.rate);
   options.start_us = std::llround(flags.start_s * 1e6);
+  options.live = isLive(flags);
+  if (!flags.checkpoint.empty()) resume(flags, *id);
   options.matcher.sigma = matching::parseSigma(flags.sigma);
 
   const comms::LinkModel model = comms::readLink(flags.link);
@@ -223,7 +264,8 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_flag("--linger", f.agent.linger, "stay after landing until told to stop");
   app.add_flag("--single", f.single, "fly everybody's shares alone, off the link, into --out itself");
-  app.add_option("--checkpoint", f.checkpoint, "not built yet");
+  app.add_option("--checkpoint", f.checkpoint,
+                 "folder in which the robot's mind is kept: started again with it, it goes on");
   app.add_option("--log-level", f.log_level, "trace, debug, info, warn, error or off")->capture_default_str();
   matcher->capture_default_str();
   try {

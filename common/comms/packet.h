@@ -13,10 +13,20 @@ namespace shoal::comms {
 using Bytes = std::vector<uint8_t>;
 
 /// What a packet is for; the order is the order of utility per byte. Every class drains.
-enum class TrafficClass : uint8_t { kHeartbeat, kMatches, kTopics, kBricks, kCertainty, kLocal };
-inline constexpr size_t kNumTrafficClasses = 6;
+/// After the local bus: the talk about what lacks, and what is said again because somebody lacked it.
+enum class TrafficClass : uint8_t {
+  kHeartbeat,
+  kMatches,
+  kTopics,
+  kBricks,
+  kCertainty,
+  kLocal,
+  kRequests,
+  kRepairs
+};
+inline constexpr size_t kNumTrafficClasses = 8;
 inline constexpr std::array<std::string_view, kNumTrafficClasses> kTrafficClassNames = {
-    "heartbeat", "matches", "topics", "bricks", "certainty", "local"};
+    "heartbeat", "matches", "topics", "bricks", "certainty", "local", "requests", "repairs"};
 
 /// A message, opaque here: channel and encoded bytes.
 struct Packet {

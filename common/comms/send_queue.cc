@@ -18,13 +18,15 @@ int64_t cost(const Packet& packet) { return static_cast<int64_t>(wireSize(packet
 }  // namespace
 
 SendQueue::SendQueue(const SendQueueOptions& options)
-    : min_resend_interval_us_(options.min_resend_interval_us) {
+    : min_resend_interval_us_(options.min_resend_interval_us), max_resends_(options.max_resends) {
   of(TrafficClass::kMatches).weight = options.matches_weight;
   of(TrafficClass::kTopics).weight = options.topics_weight;
   of(TrafficClass::kBricks).weight = options.bricks_weight;
   of(TrafficClass::kCertainty).weight = options.certainty_weight;
-  for (const auto traffic :
-       {TrafficClass::kMatches, TrafficClass::kTopics, TrafficClass::kBricks, TrafficClass::kCertainty}) {
+  of(TrafficClass::kRequests).weight = options.requests_weight;
+  of(TrafficClass::kRepairs).weight = options.repairs_weight;
+  for (const auto traffic : {TrafficClass::kMatches, TrafficClass::kTopics, TrafficClass::kBricks,
+                             TrafficClass::kCertainty, TrafficClass::kRequests, TrafficClass::kRepairs}) {
     const int64_t weight = of(traffic).weight;
     if (weight < 1 || weight > kStride) {
       throw std::invalid_argument("the weight of class " +
@@ -35,6 +37,9 @@ SendQueue::SendQueue(const SendQueueOptions& options)
   if (min_resend_interval_us_ < 1) {
     throw std::invalid_argument("min_resend_interval_us must be at least 1, got " +
                                 std::to_string(min_resend_interval_us_));
+  }
+  if (max_resends_ < 0) {
+    throw std::invalid_argument("max_resends must not be negative, got " + std::to_string(max_resends_));
   }
 }
 
@@ -68,6 +73,7 @@ void SendQueue::offer(TrafficClass traffic, std::string_view key, Packet packet)
   }
   leave(found);
   entry.packet = std::move(packet);
+  entry.num_sent = 0;
   await(found);
 }
 
@@ -121,11 +127,17 @@ void SendQueue::markSent(int64_t now_us, size_t count, size_t wire_bytes) {
   }
   for (const auto& each : sent) {
     const auto it = entries_.find(each->first);
+    Entry& entry = it->second;
     leave(it);
-    it->second.waiting = false;
-    it->second.place = next_place_++;
-    it->second.last_sent_us = now_us;
-    rotation_.emplace(it->second.place, it);
+    if (entry.traffic == TrafficClass::kRequests || entry.traffic == TrafficClass::kRepairs) {
+      entries_.erase(it);
+      continue;
+    }
+    entry.waiting = false;
+    entry.place = next_place_++;
+    if (entry.num_sent++ >= max_resends_) continue;  // held all the same: equal bytes are no news
+    entry.last_sent_us = now_us;
+    rotation_.emplace(entry.place, it);
   }
   ++revision_;
 }
@@ -133,6 +145,11 @@ void SendQueue::markSent(int64_t now_us, size_t count, size_t wire_bytes) {
 std::optional<int64_t> SendQueue::nextResend() const {
   if (rotation_.empty()) return std::nullopt;
   return rotation_.begin()->second->second.last_sent_us + min_resend_interval_us_;
+}
+
+bool SendQueue::isWaiting(std::string_view key) const {
+  const auto found = entries_.find(key);
+  return found != entries_.end() && found->second.waiting;
 }
 
 int64_t SendQueue::waitingBytes() const {

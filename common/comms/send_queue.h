@@ -20,10 +20,16 @@ struct SendQueueOptions {
   int64_t topics_weight = 8;
   int64_t bricks_weight = 4;
   int64_t certainty_weight = 1;
+  int64_t requests_weight = 8;
+  int64_t repairs_weight = 1;
 
   /// Content is not sent again sooner than this after it was last sent, mission time, >= 1. Bounds what an
   /// idle node without a budget sends.
   int64_t min_resend_interval_us = 10'000'000;
+
+  /// How often the same content is sent again, >= 0. Content that others ask for when they lack it needs
+  /// none.
+  int max_resends = 0;
 };
 
 /// What a node has to say, by key: at most one packet, the newest, for each.
@@ -31,9 +37,9 @@ struct SendQueueOptions {
 /// New content goes first. Among classes with new content the bytes are shared by weight (stride scheduling;
 /// ties go to the class of higher utility), so that every class drains; a class that had nothing to send
 /// saves nothing up. Inside a class, whoever waits longest goes first; newer content takes over the place of
-/// older unsent content. When nothing new waits, what was sent least recently is sent again, round and round:
-/// that is how losses heal. Deterministic. next() then markSent(), so that a budget may stand between the
-/// two.
+/// older unsent content. When nothing new waits, what was sent least recently is sent again, as often as the
+/// options say. Requests and repairs are said once and forgotten. Deterministic. next() then markSent(), so
+/// that a budget may stand between the two.
 class SendQueue {
  public:
   /// @throws std::invalid_argument when an option is below 1.
@@ -41,9 +47,8 @@ class SendQueue {
 
   /// Puts `packet` where `key` was, or adds it. Bytes equal to those already held change nothing, so encode
   /// without the time of sending and let Sender stamp it.
-  /// @throws std::invalid_argument for a class other than matches, topics, bricks and certainty, for a
-  /// message
-  ///         above kMaxMessageBytes, and when `key` is held in another class.
+  /// @throws std::invalid_argument for the classes heartbeat and local, for a message above kMaxMessageBytes,
+  ///         and when `key` is held in another class.
   /// Cost: O(log keys).
   void offer(TrafficClass traffic, std::string_view key, Packet packet);
 
@@ -77,6 +82,9 @@ class SendQueue {
   /// When content is due to be sent again, if nothing new comes.
   std::optional<int64_t> nextResend() const;
 
+  /// True when `key` is held and its content was not sent yet.
+  bool isWaiting(std::string_view key) const;
+
   size_t numKeys() const { return entries_.size(); }
   size_t numWaiting(TrafficClass traffic) const { return of(traffic).waiting.size(); }
   int64_t waitingBytes(TrafficClass traffic) const { return of(traffic).waiting_bytes; }  ///< On the wire.
@@ -86,9 +94,10 @@ class SendQueue {
   struct Entry {
     TrafficClass traffic;
     Packet packet;
-    bool waiting;          // else in rotation_
+    bool waiting;          // else in rotation_, while it is to be sent again
     uint64_t place;        // its key in waiting or rotation_
     int64_t last_sent_us;  // when in rotation
+    int num_sent = 0;      // this content
   };
   using Entries = std::map<std::string, Entry, std::less<>>;
   using Line = std::map<uint64_t, Entries::iterator>;
@@ -107,6 +116,7 @@ class SendQueue {
   void leave(Entries::iterator it);
 
   int64_t min_resend_interval_us_;
+  int max_resends_;
   std::array<Class, kNumTrafficClasses> classes_;
   int64_t pass_ = 0;  // of the class served last; where a class that was idle joins
   uint64_t next_place_ = 0;

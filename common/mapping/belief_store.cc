@@ -84,6 +84,13 @@ std::vector<world::RobotId> BeliefStore::robots() const {
   return robots;
 }
 
+const Piece* BeliefStore::find(const PieceKey& key, int32_t part) const {
+  const auto slot = slots_.find(key);
+  if (slot == slots_.end()) return nullptr;
+  const auto held = slot->second.parts.find(part);
+  return held == slot->second.parts.end() ? nullptr : &held->second;
+}
+
 int32_t BeliefStore::epochOf(world::RobotId robot) const {
   const auto sum = sums_.find(robot);
   return sum == sums_.end() ? -1 : sum->second.epoch;

@@ -79,6 +79,8 @@ class BeliefStore {
   void visitChanges(uint64_t since, Visitor&& visitor) const {
     for (auto at = changes_.upper_bound(since); at != changes_.end(); ++at) visitor(at->second);
   }
+  /// A usable part of a piece; null when it is not held. Valid until the next apply().
+  const Piece* find(const PieceKey& key, int32_t part) const;
 
   /// The newest epoch of a robot that was heard of; -1 when it never was.
   int32_t epochOf(world::RobotId robot) const;

@@ -13,6 +13,7 @@
 #include "shoal/wire/matches_codec.h"
 #include "shoal/wire/message_kind.h"
 #include "shoal/wire/piece_codec.h"
+#include "shoal/wire/repair_codec.h"
 
 namespace shoal::wire {
 namespace {
@@ -158,6 +159,13 @@ json fields(const MapChunk& chunk) {
   return j;
 }
 
+json fields(const Bytes& talk) {
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  std::string hex;
+  for (const uint8_t byte : talk) hex += {kDigits[byte >> 4], kDigits[byte & 15]};
+  return {{"talk", hex}};
+}
+
 }  // namespace
 
 json messageJson(const std::string& channel, std::span<const uint8_t> bytes) {
@@ -189,6 +197,10 @@ json messageJson(const std::string& channel, std::span<const uint8_t> bytes) {
       return told(decodeLabels(bytes));
     case MessageKind::kMap:
       return told(decodeMap(bytes));
+    case MessageKind::kRequest:
+      return told(decodeRequest(bytes));
+    case MessageKind::kRepair:
+      return told(decodeRepair(bytes));
   }
   return {};
 }

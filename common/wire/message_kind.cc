@@ -10,6 +10,8 @@
 #include <shoal/labels_t.hpp>
 #include <shoal/map_t.hpp>
 #include <shoal/matches_t.hpp>
+#include <shoal/repair_t.hpp>
+#include <shoal/request_t.hpp>
 #include <shoal/topics_t.hpp>
 
 #include "shoal/wire/bytes.h"
@@ -31,7 +33,8 @@ size_t fixedBytes() {
   return static_cast<size_t>(Message{}.getEncodedSize());
 }
 
-// Bytes before the payload, fingerprint included.
+}  // namespace
+
 size_t fixedBytesOf(MessageKind kind) {
   switch (kind) {
     case MessageKind::kHeartbeat:
@@ -50,12 +53,14 @@ size_t fixedBytesOf(MessageKind kind) {
       return fixedBytes<map_t>();
     case MessageKind::kEdit:
       return fixedBytes<edit_t>();
+    case MessageKind::kRequest:
+      return fixedBytes<request_t>();
+    case MessageKind::kRepair:
+      return fixedBytes<repair_t>();
   }
   SHOAL_DEMAND(false);
   return 0;
 }
-
-}  // namespace
 
 int64_t fingerprintOf(MessageKind kind) {
   switch (kind) {
@@ -75,6 +80,10 @@ int64_t fingerprintOf(MessageKind kind) {
       return map_t::getHash();
     case MessageKind::kEdit:
       return edit_t::getHash();
+    case MessageKind::kRequest:
+      return request_t::getHash();
+    case MessageKind::kRepair:
+      return repair_t::getHash();
   }
   SHOAL_DEMAND(false);
   return 0;

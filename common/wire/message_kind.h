@@ -14,10 +14,21 @@
 namespace shoal::wire {
 
 /// The types that travel. A channel is SHOAL_<NODE>_<KIND>.
-enum class MessageKind : uint8_t { kHeartbeat, kTopics, kBrick, kCertainty, kMatches, kLabels, kMap, kEdit };
+enum class MessageKind : uint8_t {
+  kHeartbeat,
+  kTopics,
+  kBrick,
+  kCertainty,
+  kMatches,
+  kLabels,
+  kMap,
+  kEdit,
+  kRequest,
+  kRepair
+};
 
-inline constexpr std::array<std::string_view, 8> kChannelKinds = {"HEARTBEAT", "TOPICS", "BRICK", "CERTAINTY",
-                                                                  "MATCHES",   "LABELS", "MAP",   "EDIT"};
+inline constexpr std::array<std::string_view, 10> kChannelKinds = {
+    "HEARTBEAT", "TOPICS", "BRICK", "CERTAINTY", "MATCHES", "LABELS", "MAP", "EDIT", "REQUEST", "REPAIR"};
 inline constexpr size_t kNumMessageKinds = kChannelKinds.size();
 
 /// The last word of the channel a kind travels on, e.g. "TOPICS".
@@ -28,6 +39,9 @@ std::optional<MessageKind> parseChannelKind(std::string_view text);
 
 /// LCM's fingerprint of the generated type: the first eight bytes of every message.
 int64_t fingerprintOf(MessageKind kind);
+
+/// Bytes of a message before its payload, fingerprint included.
+size_t fixedBytesOf(MessageKind kind);
 
 /// The inverse of fingerprintOf(); nothing for a type that is not ours.
 std::optional<MessageKind> kindOf(int64_t fingerprint);

@@ -95,7 +95,7 @@ TEST(SendQueueTest, AnIdleClassSavesNothingUp) {
 }
 
 TEST(SendQueueTest, SendsEverythingAgainRoundAndRoundWhenNothingNewWaits) {
-  SendQueue queue({.min_resend_interval_us = 1});
+  SendQueue queue({.min_resend_interval_us = 1, .max_resends = 1000});
   for (const char* key : {"a", "b", "c"}) queue.offer(TrafficClass::kTopics, key, packet(key));
   std::string sent;
   for (int now_us = 0; now_us < 9; ++now_us) sent += take(queue, now_us) + ",";
@@ -103,7 +103,7 @@ TEST(SendQueueTest, SendsEverythingAgainRoundAndRoundWhenNothingNewWaits) {
 }
 
 TEST(SendQueueTest, NewContentInterruptsTheRotation) {
-  SendQueue queue({.min_resend_interval_us = 1});
+  SendQueue queue({.min_resend_interval_us = 1, .max_resends = 1000});
   for (const char* key : {"a", "b", "c"}) queue.offer(TrafficClass::kTopics, key, packet(key));
   for (int i = 0; i < 4; ++i) take(queue, i);
   queue.offer(TrafficClass::kCertainty, "new", packet("new"));
@@ -115,7 +115,7 @@ TEST(SendQueueTest, NewContentInterruptsTheRotation) {
 }
 
 TEST(SendQueueTest, SendsNothingAgainTooSoon) {
-  SendQueue queue({.min_resend_interval_us = 1000});
+  SendQueue queue({.min_resend_interval_us = 1000, .max_resends = 1000});
   EXPECT_EQ(queue.nextResend(), std::nullopt);
   queue.offer(TrafficClass::kTopics, "a", packet("a"));
   EXPECT_EQ(take(queue, 50), "a");
@@ -134,7 +134,7 @@ TEST(SendQueueTest, TheSameContentIsNotNew) {
 }
 
 TEST(SendQueueTest, ForgetsWaitingAndSentContent) {
-  SendQueue queue({.min_resend_interval_us = 1});
+  SendQueue queue({.min_resend_interval_us = 1, .max_resends = 1000});
   queue.offer(TrafficClass::kTopics, "a", packet("a"));
   take(queue);
   queue.offer(TrafficClass::kTopics, "b", packet("b"));
@@ -147,7 +147,7 @@ TEST(SendQueueTest, ForgetsWaitingAndSentContent) {
 }
 
 TEST(SendQueueTest, CountsWhatWaitsExactly) {
-  SendQueue queue({.min_resend_interval_us = 1});
+  SendQueue queue({.min_resend_interval_us = 1, .max_resends = 1000});
   Random random(6);
   std::map<std::string, std::pair<TrafficClass, size_t>> waiting;  // the definition
   for (int i = 0; i < 3000; ++i) {

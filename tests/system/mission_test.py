@@ -147,19 +147,46 @@ class Mission(unittest.TestCase):
     def test_robots_that_crash_come_back_and_the_map_is_the_same(self):
         plan, out = os.path.join(self.top, "plan.txt"), os.path.join(self.top, "crashes")
         with open(plan, "w", encoding="utf-8") as file:
-            file.write("# R01 while it flies, R02 when it has landed\n3 R01 kill\n5.5 R01 restart\n8 R02 kill\n12 R02 restart\n")
+            file.write("# R01 while it flies, R02 when it has landed; R00 loses its disk\n3 R01 kill\n5.5 R01 restart\n"
+                       "8 R02 kill\n12 R02 restart\n4 R00 kill\n9 R00 anew\n")
         done = launch(out, "--kill-plan", plan, "--record", "--link", "mesh")
-        for robot in ["R01", "R02"]:
+        for robot in ["R00", "R01", "R02"]:
             self.assertRegex(done.stderr, robot + r" is killed at .* as planned")
-            self.assertIn("landed after 6 observations", read(os.path.join(out, "logs", robot + "_epoch1.log")).decode())
+            said = read(os.path.join(out, "logs", robot + ".log")).decode()
+            self.assertEqual("goes on from a checkpoint" in said, robot != "R00", said)
+            self.assertTrue(said.rstrip().split("landed after 6 observations")[1:], said)
         for path in ["global_map.csv", "labels.csv"] + [f"robots/R0{r}/map.csv" for r in range(3)]:
             self.assertEqual(read(os.path.join(self.a, path)), read(os.path.join(out, path)), path)
         log = os.path.join(out, "mission.lcmlog")
         answer = ask("verify", log)
         check_schema("verify", answer)
         self.assertEqual(answer["wrong"], [])
-        self.assertEqual([node["node"] for node in answer["nodes"]], ["OPERATOR", "R00", "R01", "R01", "R02", "R02"])
+        nodes = [node["node"] for node in answer["nodes"] if node["node"] != "LAUNCH"]
+        self.assertEqual(nodes, ["OPERATOR", "R00", "R00", "R01", "R01", "R02", "R02"])
         self.assertTrue(ask("replay", log, "--out", os.path.join(self.top, "crashes_again"))["whole"])
+
+    def test_processes_that_are_killed_without_a_plan_come_back(self):
+        out = os.path.join(self.top, "shot")
+        flight = subprocess.Popen([CONSOLE, "launch", "--world", "reef:tuning", *SIZE, "--out", out, "--rate", "4"],
+                                  stderr=subprocess.PIPE, text=True)
+        try:
+            for name in ["R01", "OPERATOR"]:
+                deadline = time.time() + 60
+                while time.time() < deadline:
+                    shot = subprocess.run(["pgrep", "-f", f"(--robot|--node) {name} .*{out}( |$|/)"], capture_output=True, text=True)
+                    if shot.stdout.split() and os.path.exists(os.path.join(out, "state", "robots", "R02.checkpoint")):
+                        break
+                    time.sleep(0.2)
+                os.kill(int(shot.stdout.split()[0]), signal.SIGKILL)
+            _, said = flight.communicate(timeout=200)
+        finally:
+            flight.kill()
+            flight.wait()
+        self.assertEqual(flight.returncode, 0, said)
+        self.assertRegex(said, "R01 was killed by signal 9")
+        self.assertRegex(said, "OPERATOR was killed by signal 9")
+        for path in ["global_map.csv", "labels.csv"] + [f"robots/R0{r}/map.csv" for r in range(3)]:
+            self.assertEqual(read(os.path.join(self.a, path)), read(os.path.join(out, path)), path)
 
     def test_another_seed_gives_another_map(self):
         c = os.path.join(self.top, "c")

@@ -11,6 +11,7 @@
 #include "shoal/wire/map_codec.h"
 #include "shoal/wire/matches_codec.h"
 #include "shoal/wire/piece_codec.h"
+#include "shoal/wire/repair_codec.h"
 
 namespace shoal::wire {
 namespace {
@@ -130,6 +131,17 @@ mapping::GlobalMap globalMap() {
   return map;
 }
 
+// As comms/repair_talk.h writes it: the sixteen digests of a share, two leaves below one of its nodes, one
+// piece wanted.
+Bytes talk() {
+  Bytes bytes = {1, 2, 3, 4, 4, 3, 0};
+  for (uint8_t child = 0; child < 16; ++child)
+    bytes.insert(bytes.end(), {child, static_cast<uint8_t>(child * 7)});
+  bytes.insert(bytes.end(), {1, 11, 1, 10, 2, 60, 0xa0, 0, 0, 0, 1, 0, 0xaf, 0xff, 0xff, 0xff, 0xff, 3});
+  bytes.insert(bytes.end(), {2, 3, 1, 60, 0x12, 0x34, 0x56, 0x78, 0x9a, 0});
+  return bytes;
+}
+
 }  // namespace
 
 std::vector<Example> goldenExamples() {
@@ -146,6 +158,11 @@ std::vector<Example> goldenExamples() {
   for (const auto& [name, edit] : edits()) {
     examples.push_back({name, MessageKind::kEdit, encode(mapping::pieceOf(edit), kMission, time)});
   }
+  examples.push_back({"request", MessageKind::kRequest, encodeRequest(talk(), kMission, time)});
+  examples.push_back({"repair_topic", MessageKind::kRepair, encodeRepair(topic(), kMission, time)});
+  examples.push_back({"repair_brick", MessageKind::kRepair, encodeRepair(brick(), kMission, time)});
+  examples.push_back({"repair_edit", MessageKind::kRepair,
+                      encodeRepair(mapping::pieceOf(edits()[1].second), kMission, time)});
   return examples;
 }
 
@@ -173,6 +190,12 @@ Bytes decodeAndEncode(MessageKind kind, std::span<const uint8_t> bytes, DecodeEr
     case MessageKind::kLabels:
       return again(decodeLabels(bytes),
                    [&](const LabelsChunk& chunk) { return encode(chunk, mission, time); });
+    case MessageKind::kRequest:
+      return again(decodeRequest(bytes),
+                   [&](const Bytes& said) { return encodeRequest(said, mission, time); });
+    case MessageKind::kRepair:
+      return again(decodeRepair(bytes),
+                   [&](const Piece& piece) { return encodeRepair(piece, mission, time); });
     case MessageKind::kMap:
       return again(decodeMap(bytes), [&](const MapChunk& chunk) { return encode(chunk, mission, time); });
   }

@@ -42,6 +42,10 @@ size_t fixedBytesOf(MessageKind kind) {
       return 57;
     case MessageKind::kEdit:
       return 60;
+    case MessageKind::kRequest:
+      return 27;
+    case MessageKind::kRepair:
+      return 28;
   }
   return 0;
 }

@@ -32,10 +32,13 @@ FIELDS = {
     "EDIT": [
         ("operation", "B"), ("made", "q"), ("counter", "i"), ("robot", "h"), ("epoch", "i"), ("topic", "h"),
         ("other_robot", "h"), ("other_epoch", "i"), ("other_topic", "h"), ("undone", "i")],
+    "REQUEST": [],
+    "REPAIR": [("piece_kind", "B")],
     "MAP": [("map_digest", "q"), ("chunk", "i"), ("num_chunks", "i")] + _BRICK + [("fused_cells", "h")],
 }
 LAYOUT = {kind: struct.Struct(">qqiB" + "".join(code for _, code in fields) + "Hi") for kind, fields in FIELDS.items()}
 _LCM_TYPE = {"q": "int64_t", "i": "int32_t", "h": "int16_t", "B": "byte", "d": "double", "f": "float"}
+PIECE_KINDS = {1: "TOPICS", 2: "BRICK", 3: "CERTAINTY", 4: "EDIT"}  # of repairs
 TRAFFIC_CLASSES = ["heartbeat", "matches", "topics", "bricks", "certainty", "local"]
 OPERATIONS = ["name", "link", "unlink", "exclude", "undo"]
 PHASES = ["flying", "landed", "leaving", "node"]

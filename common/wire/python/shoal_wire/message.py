@@ -5,7 +5,7 @@ import re
 import struct
 
 from .errors import require
-from .layout import FIELDS, FORMAT, KINDS, LAYOUT, MASK, MAX_MESSAGE, MAX_ROBOT, MAX_TIME, UNSIGNED
+from .layout import FIELDS, FINGERPRINTS, FORMAT, KINDS, LAYOUT, MASK, MAX_MESSAGE, MAX_ROBOT, MAX_TIME, PIECE_KINDS, UNSIGNED
 from .payloads import READ, brick_headers
 from .range_coder import Bits
 
@@ -53,11 +53,14 @@ def decode(data):
     words [(word, count)]. In place of the counts, BRICK: bricks, dicts of part, num_parts, observation, brick_x, y, z
     and cells [((x, y, z), topic, seen_us)]. CERTAINTY: certain_bricks, with certainties [((x, y, z), steps)]. MAP: fused_cells [((x, y, z), label, robot, seen_us, steps)]. MATCHES:
     correspondences [(robot, topic, label)]. EDIT: operation, author, counter, made_us, and topics [[robot, epoch,
-    topic]], name, robot or undone [author, counter]. LABELS: labels [{label, name, cells, robots, first_seen_us}].
+    topic]], name, robot or undone [author, counter]. REQUEST: talk in hexadecimal. REPAIR: what the piece's own
+    message holds. LABELS: labels [{label, name, cells, robots, first_seen_us}].
 
     Raises BadMessage, whatever the bytes are.
     """
     m, payload = unframe(bytes(data))
+    if m["kind"] == "REPAIR":
+        return {**decode(repaired(m, payload)), "kind": "REPAIR"}
     READ[m["kind"]](m, payload)
     return m
 
@@ -79,6 +82,17 @@ def keys_of(data):
     require(1 <= count <= 1024, "bricks")
     return [((b["brick_x"], b["brick_y"], b["brick_z"]), (m["epoch"], b["observation"]), b["part"])
             for b in brick_headers(Bits(payload), count)]
+
+
+def repaired(m, payload):
+    """The piece's own message that a REPAIR, as unframe() gives it, says again."""
+    require(m["piece_kind"] in PIECE_KINDS, f"piece_kind is {m['piece_kind']}")
+    kind = PIECE_KINDS[m["piece_kind"]]
+    own = LAYOUT[kind].size - 27  # between the front, 21 bytes, and checksum and n
+    require(len(payload) >= own, f"{len(payload)} bytes", "too short")
+    front = struct.pack(">QqiB", FINGERPRINTS[kind], m["utime"], m["mission"], FORMAT) + payload[:own]
+    rest = struct.pack(">i", len(payload) - own)
+    return front + struct.pack(">H", binascii.crc_hqx(front + b"\0\0" + rest, 0xFFFF)) + rest + payload[own:]
 
 
 def parse_datagram(packet):

@@ -6,7 +6,7 @@ from .digests import content_hash, edit_hash, hash_of, map_digest
 from .errors import BadFile, BadMessage, require
 from .layout import LAYOUT, MASK, OPERATORS
 from .log import Log
-from .message import decode, keys_of, parse_channel, peek, pieces_of, robot_name, unframe
+from .message import decode, keys_of, parse_channel, peek, pieces_of, repaired, robot_name, unframe
 
 
 class _Lists:
@@ -68,18 +68,28 @@ class Mission:
                 held = self.heartbeats.get(node, m)
                 if (m["epoch"], m["utime"]) >= (held["epoch"], held["utime"]):
                     self.heartbeats[node] = m
+            elif kind == "REPAIR":  # whoever made the piece, any node may say it again
+                data = repaired(*unframe(data))
+                m, _ = unframe(data)
+                if m["kind"] == "EDIT":
+                    self._hear_edit(data)
+                else:
+                    self._hear_piece(m, data)
             elif kind in ("TOPICS", "BRICK", "CERTAINTY"):
                 require(robot_name(m["robot"]) == node, node, "wrong sender")
                 self._hear_piece(m, data)
             elif kind == "EDIT":  # whoever made it, any node may say it
-                m = decode(data)
-                require(len(self._edits) < 10000, "edits", "over limit")
-                self._edits.setdefault(edit_hash(m), m)
-            else:
+                self._hear_edit(data)
+            elif kind != "REQUEST":
                 self._lists.setdefault((node, kind), _Lists()).hear(m, data)
             self.heard += 1
         except BadMessage as error:
             self.refused[error.reason] += 1
+
+    def _hear_edit(self, data):
+        m = decode(data)
+        require(len(self._edits) < 10000, "edits", "over limit")
+        self._edits.setdefault(edit_hash(m), m)
 
     def _hear_piece(self, m, data):
         content = (data[:8], data[16:LAYOUT[m["kind"]].size - 6], data[LAYOUT[m["kind"]].size:])

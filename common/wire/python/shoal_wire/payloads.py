@@ -280,6 +280,10 @@ def _name(raw):
     return name
 
 
+def _read_request(m, payload):
+    m["talk"] = payload.hex()
+
+
 READ = {"HEARTBEAT": _read_heartbeat, "TOPICS": _read_topics, "BRICK": _read_bricks, "CERTAINTY": _read_certainties,
         "MATCHES": _read_matches, "LABELS": _read_labels, "MAP": _read_map,
-        "EDIT": _read_edit}
+        "EDIT": _read_edit, "REQUEST": _read_request}

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "robot_agent/checkpoint.h"
+
+#include <bit>
+#include <filesystem>
+#include <span>
+#include <stdexcept>
+#include <string_view>
+
+#include "shoal/mapping/atomic_file.h"
+#include "shoal/random.h"
+#include "shoal/wire/bytes.h"
+#include "shoal/wire/message_kind.h"
+#include "shoal/wire/piece_codec.h"
+
+namespace shoal::robot_agent {
+namespace {
+
+constexpr std::string_view kMagic = "SHOALRC1";  // the last letter is the version
+
+uint64_t hashOf(std::span<const uint8_t> bytes) {
+  uint64_t hash = bytes.size();
+  for (; bytes.size() >= 8; bytes = bytes.subspan(8))
+    hash = hashCombine(hash, wire::bigEndian(bytes.first(8)));
+  return hashCombine(hash, wire::bigEndian(bytes));
+}
+
+void putNumber(wire::Bytes& out, int64_t value) { wire::putBigEndian(out, static_cast<uint64_t>(value), 8); }
+
+void putBlob(wire::Bytes& out, std::span<const uint8_t> blob) {
+  wire::putVarint(out, blob.size());
+  out.insert(out.end(), blob.begin(), blob.end());
+}
+
+int64_t number64(wire::ByteReader& in) { return static_cast<int64_t>(in.bigEndian(8)); }
+
+Checkpoint read(wire::ByteReader& in, const std::string& path) {
+  const auto damaged = [&path](const std::string& what) {
+    return std::runtime_error(path + " is damaged: " + what);
+  };
+  Checkpoint c;
+  c.mission = static_cast<int32_t>(number64(in));
+  c.robot = world::RobotId{static_cast<int32_t>(number64(in))};
+  c.epoch = static_cast<int32_t>(number64(in));
+  c.mission_us = number64(in);
+  c.wall_us = number64(in);
+  const auto explorer = in.take(in.varint());
+  c.explorer.assign(explorer.begin(), explorer.end());
+  for (uint64_t n = in.varint(); n > 0 && !in.failed(); --n) {
+    const bool waits = in.bigEndian(1) != 0;
+    const auto message = in.take(in.varint());
+    const auto header = wire::peek(message);
+    if (!header) throw damaged("what is no message stands for a piece");
+    const auto pieces = wire::decodePieces(header->kind, message);
+    if (!pieces) throw damaged("a piece is refused: " + std::string(wire::name(pieces.error())));
+    for (const mapping::Piece& piece : *pieces) c.said.push_back({piece, waits});
+  }
+  for (uint64_t n = in.varint(); n > 0 && !in.failed(); --n) {
+    mapping::StampedPose pose;
+    pose.time.us = number64(in);
+    for (Eigen::Index row = 0; row < 3; ++row)
+      for (Eigen::Index column = 0; column < 4; ++column)
+        pose.world_from_camera.matrix()(row, column) = std::bit_cast<double>(in.bigEndian(8));
+    c.path.push_back(pose);
+  }
+  if (in.failed() || in.remaining() != 0) throw damaged("its lengths do not fit");
+  return c;
+}
+
+}  // namespace
+
+std::string checkpointPath(const std::string& folder, world::RobotId robot) {
+  return folder + "/" + world::name(robot) + ".checkpoint";
+}
+
+void writeCheckpoint(const std::string& path, const Checkpoint& c) {
+  wire::Bytes out(kMagic.begin(), kMagic.end());
+  for (const int64_t value :
+       {int64_t{c.mission}, int64_t{number(c.robot)}, int64_t{c.epoch}, c.mission_us, c.wall_us})
+    putNumber(out, value);
+  putBlob(out, c.explorer);
+  wire::putVarint(out, c.said.size());
+  for (const Checkpoint::Said& said : c.said) {
+    out.push_back(said.waits ? 1 : 0);
+    putBlob(out, wire::encode(said.piece, c.mission, {}));
+  }
+  wire::putVarint(out, c.path.size());
+  for (const mapping::StampedPose& pose : c.path) {
+    putNumber(out, pose.time.us);
+    for (Eigen::Index row = 0; row < 3; ++row)
+      for (Eigen::Index column = 0; column < 4; ++column)
+        wire::putBigEndian(out, std::bit_cast<uint64_t>(pose.world_from_camera.matrix()(row, column)), 8);
+  }
+  wire::putBigEndian(out, hashOf(out), 8);
+  mapping::writeFileAtomically(path, {reinterpret_cast<const char*>(out.data()), out.size()});
+}
+
+std::optional<Checkpoint> readCheckpoint(const std::string& path) {
+  if (!std::filesystem::exists(path)) return std::nullopt;
+  const std::string text = mapping::readFile(path);
+  const auto bytes = std::span(reinterpret_cast<const uint8_t*>(text.data()), text.size());
+  if (bytes.size() < kMagic.size() + 8 || !text.starts_with(kMagic))
+    throw std::runtime_error(path + " is no checkpoint of this version");
+  const auto body = bytes.first(bytes.size() - 8);
+  if (hashOf(body) != wire::bigEndian(bytes.last(8))) throw std::runtime_error(path + " is damaged");
+  wire::ByteReader in(body.subspan(kMagic.size()));
+  return read(in, path);
+}
+
+}  // namespace shoal::robot_agent

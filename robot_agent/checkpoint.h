@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "shoal/mapping/piece.h"
+#include "shoal/mapping/poses_file.h"
+#include "shoal/world/ids.h"
+
+namespace shoal::robot_agent {
+
+/// What a robot needs to go on after a crash as if there had been none: its mind, and what it has told the
+/// others, so that no version ever has two contents. Written right after it has offered what changed and
+/// before it says any of that.
+struct Checkpoint {
+  int32_t mission = 0;
+  world::RobotId robot{};
+  int32_t epoch = 0;
+  int64_t mission_us = 0;         ///< its clock ...
+  int64_t wall_us = 0;            ///< ... at this time since 1970
+  std::vector<uint8_t> explorer;  ///< robot::Explorer::checkpoint()
+  struct Said {
+    mapping::Piece piece;
+    bool waits = false;  ///< not sent yet
+  };
+  std::vector<Said> said;                  ///< the usable parts of the newest versions
+  std::vector<mapping::StampedPose> path;  ///< one pose an observation
+};
+
+/// The file of a robot's checkpoint in a folder.
+std::string checkpointPath(const std::string& folder, world::RobotId robot);
+
+/// Writes it whole or not at all.
+/// @throws std::runtime_error naming the file that cannot be written.
+void writeCheckpoint(const std::string& path, const Checkpoint& checkpoint);
+
+/// Nothing when there is no such file.
+/// @throws std::runtime_error naming the file, when it is damaged or cannot be read.
+std::optional<Checkpoint> readCheckpoint(const std::string& path);
+
+}  // namespace shoal::robot_agent
