@@ -89,6 +89,7 @@ void MissionState::hear(const comms::Packet& packet, comms::Stats& stats) {
     case wire::MessageKind::kTopics:
     case wire::MessageKind::kBrick:
     case wire::MessageKind::kCertainty:
+    case wire::MessageKind::kPicture:
     case wire::MessageKind::kEdit: {
       const auto piece = wire::decodePiece(header->kind, packet.bytes);
       if (!piece) return stats.countRejected(wire::name(piece.error()));

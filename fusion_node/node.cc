@@ -9,6 +9,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include "fusion_node/picture_files.h"
 #include "fusion_node/process.h"
 #include "shoal/comms/channels.h"
 #include "shoal/mapping/atomic_file.h"
@@ -204,6 +205,7 @@ void Node::finish() {
     mapping::writeFileAtomically(options_.out_dir + "/edits.json",
                                  mapping::editsJson(options_.mission, edits));
   }
+  writeLabelPictures(options_.out_dir + "/pictures", state_.map(), state_.beliefs());
   spdlog::info("map of {} cells, {} labels written to {}", state_.map().cells.size(),
                state_.map().labels.size(), options_.out_dir);
 }

@@ -13,10 +13,10 @@ namespace shoal::comms {
 using Bytes = std::vector<uint8_t>;
 
 /// What a packet is for; the order is the order of utility per byte. Every class drains.
-enum class TrafficClass : uint8_t { kHeartbeat, kMatches, kTopics, kBricks, kCertainty, kLocal };
-inline constexpr size_t kNumTrafficClasses = 6;
+enum class TrafficClass : uint8_t { kHeartbeat, kMatches, kTopics, kBricks, kCertainty, kPictures, kLocal };
+inline constexpr size_t kNumTrafficClasses = 7;
 inline constexpr std::array<std::string_view, kNumTrafficClasses> kTrafficClassNames = {
-    "heartbeat", "matches", "topics", "bricks", "certainty", "local"};
+    "heartbeat", "matches", "topics", "bricks", "certainty", "pictures", "local"};
 
 /// A message, opaque here: channel and encoded bytes.
 struct Packet {

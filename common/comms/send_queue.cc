@@ -22,8 +22,9 @@ SendQueue::SendQueue(const SendQueueOptions& options)
   of(TrafficClass::kTopics).weight = options.topics_weight;
   of(TrafficClass::kBricks).weight = options.bricks_weight;
   of(TrafficClass::kCertainty).weight = options.certainty_weight;
-  for (const auto traffic :
-       {TrafficClass::kMatches, TrafficClass::kTopics, TrafficClass::kBricks, TrafficClass::kCertainty}) {
+  of(TrafficClass::kPictures).weight = options.pictures_weight;
+  for (const auto traffic : {TrafficClass::kMatches, TrafficClass::kTopics, TrafficClass::kBricks,
+                             TrafficClass::kCertainty, TrafficClass::kPictures}) {
     const int64_t weight = of(traffic).weight;
     if (weight < 1 || weight > kStride) {
       throw std::invalid_argument("the weight of class " +

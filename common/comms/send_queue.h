@@ -19,6 +19,7 @@ struct SendQueueOptions {
   int64_t topics_weight = 8;
   int64_t bricks_weight = 4;
   int64_t certainty_weight = 1;
+  int64_t pictures_weight = 1;
 
   /// Content is not sent again sooner than this after it was last sent, mission time, >= 1. Bounds what an
   /// idle node without a budget sends.
@@ -40,7 +41,7 @@ class SendQueue {
 
   /// Puts `packet` where `key` was, or adds it. Bytes equal to those already held change nothing, so encode
   /// without the time of sending and let Sender stamp it.
-  /// @throws std::invalid_argument for a class other than matches, topics, bricks and certainty, for a
+  /// @throws std::invalid_argument for a class other than matches, topics, bricks, certainty and pictures, for a
   /// message
   ///         above kMaxMessageBytes, and when `key` is held in another class.
   /// Cost: O(log keys).

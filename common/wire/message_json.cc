@@ -46,7 +46,8 @@ json fields(const Heartbeat& h) {
          {"rejected", h.rejected},
          {"conflicts", h.conflicts},
          {"ms_per_frame", double{h.ms_per_frame}}};
-  constexpr std::array kClasses = {"heartbeat", "matches", "topics", "bricks", "certainty", "local"};
+  constexpr std::array kClasses = {"heartbeat", "matches",  "topics", "bricks",
+                                   "certainty", "pictures", "local"};
   for (size_t c = 0; c < kClasses.size(); ++c) j["class_bytes"][kClasses[c]] = h.class_bytes[c];
   j["roster"] = json::array();
   for (const auto& share : h.roster) j["roster"].push_back(json::array({number(share.robot), share.digest}));
@@ -90,6 +91,14 @@ json fields(const mapping::Piece& piece) {
     j["group_sizes"] = topic->group_sizes;
     j["words"] = json::array();
     for (const auto& [word, count] : topic->words) j["words"].push_back(json::array({word, count}));
+    return j;
+  }
+  if (const auto* picture = std::get_if<mapping::PicturePart>(&piece.content)) {
+    j["topic"] = piece.key.index[0];
+    j["example"] = piece.key.index[1];
+    j["cell"] = arrayOf(picture->cell);
+    j["seen_us"] = picture->seen.us;
+    j["layer"] = picture->layer;
     return j;
   }
   j["brick_x"] = piece.key.index[0];
@@ -169,6 +178,7 @@ json messageJson(const std::string& channel, std::span<const uint8_t> bytes) {
     case MessageKind::kBrick:
     case MessageKind::kCertainty:
     case MessageKind::kEdit:
+    case MessageKind::kPicture:
       return told(decodePiece(header->kind, bytes));
     case MessageKind::kMatches:
       return told(decodeMatches(bytes));

@@ -10,6 +10,7 @@
 #include <shoal/labels_t.hpp>
 #include <shoal/map_t.hpp>
 #include <shoal/matches_t.hpp>
+#include <shoal/picture_t.hpp>
 #include <shoal/topics_t.hpp>
 
 #include "shoal/wire/bytes.h"
@@ -50,6 +51,8 @@ size_t fixedBytesOf(MessageKind kind) {
       return fixedBytes<map_t>();
     case MessageKind::kEdit:
       return fixedBytes<edit_t>();
+    case MessageKind::kPicture:
+      return fixedBytes<picture_t>();
   }
   SHOAL_DEMAND(false);
   return 0;
@@ -75,6 +78,8 @@ int64_t fingerprintOf(MessageKind kind) {
       return map_t::getHash();
     case MessageKind::kEdit:
       return edit_t::getHash();
+    case MessageKind::kPicture:
+      return picture_t::getHash();
   }
   SHOAL_DEMAND(false);
   return 0;

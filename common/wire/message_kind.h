@@ -14,10 +14,20 @@
 namespace shoal::wire {
 
 /// The types that travel. A channel is SHOAL_<NODE>_<KIND>.
-enum class MessageKind : uint8_t { kHeartbeat, kTopics, kBrick, kCertainty, kMatches, kLabels, kMap, kEdit };
+enum class MessageKind : uint8_t {
+  kHeartbeat,
+  kTopics,
+  kBrick,
+  kCertainty,
+  kMatches,
+  kLabels,
+  kMap,
+  kEdit,
+  kPicture
+};
 
-inline constexpr std::array<std::string_view, 8> kChannelKinds = {"HEARTBEAT", "TOPICS", "BRICK", "CERTAINTY",
-                                                                  "MATCHES",   "LABELS", "MAP",   "EDIT"};
+inline constexpr std::array<std::string_view, 9> kChannelKinds = {
+    "HEARTBEAT", "TOPICS", "BRICK", "CERTAINTY", "MATCHES", "LABELS", "MAP", "EDIT", "PICTURE"};
 inline constexpr size_t kNumMessageKinds = kChannelKinds.size();
 
 /// The last word of the channel a kind travels on, e.g. "TOPICS".

@@ -12,6 +12,7 @@
 #include "shoal/wire/edit_message.h"
 #include "shoal/wire/message.h"
 #include "shoal/wire/payloads.h"
+#include "shoal/wire/picture_message.h"
 
 namespace shoal::wire {
 namespace {
@@ -110,6 +111,9 @@ Bytes encodeValid(const Piece& piece, int32_t mission, world::Timestamp time) {
     return pack(std::move(message), encodeBrick(*brick));
   }
   if (const auto* edit = std::get_if<mapping::Edit>(&piece.content)) return encodeEdit(*edit, mission, time);
+  if (std::holds_alternative<mapping::PicturePart>(piece.content)) {
+    return encodePictureMessage(piece, mission, time);
+  }
   const auto& certainty = std::get<CertaintyPart>(piece.content);
   auto message = frame<certainty_t>(piece, mission, time);
   setBrick(message, piece);
@@ -177,8 +181,10 @@ MessageKind kindOf(const Piece& piece) {
       return MessageKind::kBrick;
     case 2:
       return MessageKind::kCertainty;
-    default:
+    case 3:
       return MessageKind::kEdit;
+    default:
+      return MessageKind::kPicture;
   }
 }
 
@@ -191,6 +197,8 @@ std::string fault(const Piece& piece) {
   if (piece.part < 0 || piece.part >= piece.num_parts) return "parts are numbered from 0 to num_parts - 1";
   if (const auto* topic = std::get_if<TopicPart>(&piece.content)) return faultOf(*topic, piece.key);
   if (const auto* brick = std::get_if<BrickPart>(&piece.content)) return faultOf(*brick, piece.key);
+  if (const auto* picture = std::get_if<mapping::PicturePart>(&piece.content))
+    return faultOf(*picture, piece);
   return faultOf(std::get<CertaintyPart>(piece.content), piece.key);
 }
 
@@ -207,7 +215,8 @@ Bytes encode(const Piece& piece, int32_t mission, world::Timestamp time) {
 
 std::vector<Piece> cutToFit(const Piece& whole, size_t max_payload) {
   if (const std::string why = fault(whole); !why.empty()) throw std::invalid_argument("piece: " + why);
-  if (std::holds_alternative<mapping::Edit>(whole.content)) return {whole};  // always small
+  if (std::holds_alternative<mapping::Edit>(whole.content)) return {whole};         // always small
+  if (std::holds_alternative<mapping::PicturePart>(whole.content)) return {whole};  // cut into layers already
   if (whole.num_parts != 1) throw std::invalid_argument("piece: it is a part already");
   const auto cut = [&](const auto& part, size_t count, size_t max_run) {
     const auto make = [&](size_t begin, size_t end) {
@@ -265,6 +274,8 @@ Result<Piece> decodePiece(MessageKind kind, std::span<const uint8_t> bytes) {
                                                        &certainty_t::certainties, decodeCertainty);
       case MessageKind::kEdit:
         return decodeEdit(bytes);
+      case MessageKind::kPicture:
+        return decodePictureMessage(bytes);
       default:
         return DecodeError::kWrongType;
     }

@@ -40,6 +40,8 @@ size_t fixedBytesOf(MessageKind kind) {
       return 41;
     case MessageKind::kMap:
       return 57;
+    case MessageKind::kPicture:
+      return 62;
     case MessageKind::kEdit:
       return 60;
   }

@@ -54,7 +54,8 @@ def decode(data):
     words [(word, count)]. In place of the counts, BRICK: cells [((x, y, z), topic, seen_us)]. CERTAINTY:
     certainties [((x, y, z), steps)]. MAP: fused_cells [((x, y, z), label, robot, seen_us, steps)]. MATCHES:
     correspondences [(robot, topic, label)]. EDIT: operation, author, counter, made_us, and topics [[robot, epoch,
-    topic]], name, robot or undone [author, counter]. LABELS: labels [{label, name, cells, robots, first_seen_us}].
+    topic]], name, robot or undone [author, counter]. PICTURE:
+    cell (x, y, z), seen_us, layer [bytes]. LABELS: labels [{label, name, cells, robots, first_seen_us}].
 
     Raises BadMessage, whatever the bytes are.
     """

@@ -67,7 +67,7 @@ class Mission:
                 held = self.heartbeats.get(node, m)
                 if (m["epoch"], m["utime"]) >= (held["epoch"], held["utime"]):
                     self.heartbeats[node] = m
-            elif kind in ("TOPICS", "BRICK", "CERTAINTY"):
+            elif kind in ("TOPICS", "BRICK", "CERTAINTY", "PICTURE"):
                 require(robot_name(m["robot"]) == node, node, "wrong sender")
                 self._hear_piece(m, data)
             elif kind == "EDIT":  # whoever made it, any node may say it
@@ -85,7 +85,10 @@ class Mission:
         if content in self._seen:  # all but when it was sent
             return
         self._seen.add(content)
-        index = m["topic"] if m["kind"] == "TOPICS" else (m["brick_x"], m["brick_y"], m["brick_z"])
+        if m["kind"] in ("TOPICS", "PICTURE"):
+            index = m["topic"], m.get("example", 0)
+        else:
+            index = m["brick_x"], m["brick_y"], m["brick_z"]
         versions = self._versions.setdefault((m["robot"], m["kind"], index), {})
         versions.setdefault((m["epoch"], m["observation"]), []).append(data)
         self._usable = None
