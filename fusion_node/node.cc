@@ -205,7 +205,8 @@ void Node::finish() {
     mapping::writeFileAtomically(options_.out_dir + "/edits.json",
                                  mapping::editsJson(options_.mission, edits));
   }
-  writeLabelPictures(options_.out_dir + "/pictures", state_.map(), state_.beliefs());
+  writeLabelPictures(options_.out_dir + "/pictures",
+                     mapping::picturesOfLabels(state_.map(), state_.beliefs()));
   spdlog::info("map of {} cells, {} labels written to {}", state_.map().cells.size(),
                state_.map().labels.size(), options_.out_dir);
 }

@@ -34,12 +34,11 @@ cv::Mat pixelsOf(const mapping::HeldPicture& picture) {
   return pixels;
 }
 
-std::vector<std::string> writeLabelPictures(const std::string& folder, const mapping::GlobalMap& map,
-                                            const mapping::BeliefStore& beliefs) {
+std::vector<std::string> writeLabelPictures(const std::string& folder,
+                                            const mapping::LabelPictures& pictures) {
   std::vector<std::string> files;
-  const auto pictures = mapping::picturesOfLabels(map, beliefs);
   if (pictures.empty()) return files;
-  nlohmann::ordered_json index = mapping::picturesAnswer(map, beliefs);
+  nlohmann::ordered_json index = mapping::picturesAnswer(pictures);
   size_t row = 0;
   for (const auto& [label, held] : pictures) {
     for (size_t i = 0; i < held.size(); ++i) {

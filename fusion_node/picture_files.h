@@ -16,11 +16,11 @@ namespace shoal::fusion_node {
 /// them give some picture.
 cv::Mat pixelsOf(const mapping::HeldPicture& picture);
 
-/// The pictures of a map's labels as FOLDER/10004.png, 10004_1.png, ..., the best first, and
+/// The pictures of labels as FOLDER/10004.png, 10004_1.png, ..., the best first, and
 /// FOLDER/pictures.json, which says of each label what they show. Nothing when there is no picture.
 /// @returns the names of the files. @throws std::runtime_error naming a file that cannot be written.
-std::vector<std::string> writeLabelPictures(const std::string& folder, const mapping::GlobalMap& map,
-                                            const mapping::BeliefStore& beliefs);
+std::vector<std::string> writeLabelPictures(const std::string& folder,
+                                            const mapping::LabelPictures& pictures);
 
 /// The pictures of one robot's topics as FOLDER/3.png, 3_1.png, ...
 /// @returns the names of the files. @throws std::runtime_error naming a file that cannot be written.

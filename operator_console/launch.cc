@@ -24,7 +24,9 @@
 #include "operator_console/mission_watch.h"
 #include "operator_console/progress.h"
 #include "operator_console/stop_signal.h"
+#include "operator_console/summary.h"
 #include "operator_console/supervisor.h"
+#include "shoal/mapping/atomic_file.h"
 #include "shoal/comms/kernel_limits.h"
 #include "shoal/comms/lcm_bus.h"
 #include "shoal/comms/lcm_url.h"
@@ -339,6 +341,7 @@ int Mission::run(bool url_was_given) {
     run.nodes = watch_.statuses();
     run.worst_window = watch_.worstWindow();
     std::fputs(finishRun(run).c_str(), stdout);
+    mapping::writeFileAtomically(options_.out + "/summary.html", summaryHtml(readSummaryOf(options_.out)));
     if (lacking.empty()) return 0;
     spdlog::error("{} within {} s: {}",
                   run.converged ? "the recording is not whole" : "the nodes do not agree",

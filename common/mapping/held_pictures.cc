@@ -93,9 +93,9 @@ std::map<world::GlobalLabel, std::vector<HeldPicture>> picturesOfLabels(const Gl
   return pictures;
 }
 
-Json picturesAnswer(const GlobalMap& map, const BeliefStore& beliefs) {
+Json picturesAnswer(const LabelPictures& of_labels) {
   Json labels = Json::array();
-  for (const auto& [label, pictures] : picturesOfLabels(map, beliefs)) {
+  for (const auto& [label, pictures] : of_labels) {
     Json row{{"label", number(label)}, {"pictures", Json::array()}};
     for (const HeldPicture& p : pictures) {
       Json layers = Json::array();
@@ -113,8 +113,8 @@ Json picturesAnswer(const GlobalMap& map, const BeliefStore& beliefs) {
   return {{"labels", std::move(labels)}};
 }
 
-std::map<world::GlobalLabel, std::vector<HeldPicture>> picturesFrom(const Json& answer) {
-  std::map<world::GlobalLabel, std::vector<HeldPicture>> pictures;
+LabelPictures picturesFrom(const Json& answer) {
+  LabelPictures pictures;
   try {
     for (const Json& row : answer.at("labels")) {
       std::vector<HeldPicture>& of_label = pictures[world::GlobalLabel{row.at("label").get<int32_t>()}];

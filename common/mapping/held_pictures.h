@@ -34,11 +34,13 @@ std::map<world::GlobalLabel, std::vector<HeldPicture>> picturesOfLabels(const Gl
                                                                         const BeliefStore& beliefs,
                                                                         size_t most = 4);
 
+using LabelPictures = std::map<world::GlobalLabel, std::vector<HeldPicture>>;
+
 /// The answer to "pictures": per label its pictures, each with its layers in hexadecimal digits, as they
 /// travelled. Nothing is decoded here.
-nlohmann::ordered_json picturesAnswer(const GlobalMap& map, const BeliefStore& beliefs);
+nlohmann::ordered_json picturesAnswer(const LabelPictures& pictures);
 
 /// The inverse, for who asked. @throws std::runtime_error naming what is wrong with the answer.
-std::map<world::GlobalLabel, std::vector<HeldPicture>> picturesFrom(const nlohmann::ordered_json& answer);
+LabelPictures picturesFrom(const nlohmann::ordered_json& answer);
 
 }  // namespace shoal::mapping
