@@ -26,11 +26,11 @@
 #include "operator_console/stop_signal.h"
 #include "operator_console/summary.h"
 #include "operator_console/supervisor.h"
-#include "shoal/mapping/atomic_file.h"
 #include "shoal/comms/kernel_limits.h"
 #include "shoal/comms/lcm_bus.h"
 #include "shoal/comms/lcm_url.h"
 #include "shoal/comms/link_model.h"
+#include "shoal/mapping/atomic_file.h"
 #include "shoal/random.h"
 
 namespace shoal::console {
