@@ -94,6 +94,7 @@ bool MissionState::hear(const comms::Packet& packet, comms::Stats& stats) {
     case wire::MessageKind::kTopics:
     case wire::MessageKind::kBrick:
     case wire::MessageKind::kCertainty:
+    case wire::MessageKind::kPicture:
     case wire::MessageKind::kEdit: {
       const auto pieces = wire::decodePieces(header->kind, packet.bytes);
       if (!pieces) return refuse(wire::name(pieces.error()));

@@ -10,6 +10,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include "fusion_node/picture_files.h"
 #include "fusion_node/process.h"
 #include "shoal/comms/channels.h"
 #include "shoal/mapping/atomic_file.h"
@@ -236,6 +237,8 @@ void Node::finish() {
     mapping::writeFileAtomically(options_.out_dir + "/edits.json",
                                  mapping::editsJson(options_.mission, edits));
   }
+  writeLabelPictures(options_.out_dir + "/pictures",
+                     mapping::picturesOfLabels(state_.map(), state_.beliefs()));
   spdlog::info("map of {} cells, {} labels written to {}", state_.map().cells.size(),
                state_.map().labels.size(), options_.out_dir);
 }

@@ -33,6 +33,8 @@ void addEditCommands(CLI::App& app, Action& chosen);
 /// completion SHELL: a script that completes commands and flags.
 void addCompletionCommand(CLI::App& app, Action& chosen);
 void addEvaluateCommand(CLI::App& app, Action& chosen);
+/// summary: a finished mission as one page.
+void addSummaryCommand(CLI::App& app, Action& chosen);
 void addReplayCommand(CLI::App& app, Action& chosen);
 /// spy: what is said on the link. doctor: would a mission work here?
 void addSpyCommand(CLI::App& app, Action& chosen);

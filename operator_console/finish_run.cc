@@ -7,6 +7,7 @@
 
 #include "fusion_node/mission_state.h"
 #include "operator_console/evaluate.h"
+#include "operator_console/label_pictures.h"
 #include "operator_console/render.h"
 #include "shoal/comms/packet.h"
 #include "shoal/mapping/atomic_file.h"
@@ -66,7 +67,8 @@ std::string finishRun(const RunInfo& run) {
                                         options.num_robots == 1 ? "" : "s", map.labels.size());
   mapping::writeFileAtomically(
       options.out + "/global_map.png",
-      encodePng(render(map, grid, title, has_truth ? std::optional(evaluation.truth) : std::nullopt)));
+      encodePng(render(map, grid, title, has_truth ? std::optional(evaluation.truth) : std::nullopt,
+                       legendPictures(picturesOfRun(options.out)))));
   Json robots = Json::array();
   for (int number = 0; number < options.num_robots; ++number) {
     robots.push_back(world::name(world::RobotId{number}));

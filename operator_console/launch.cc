@@ -25,11 +25,13 @@
 #include "operator_console/progress.h"
 #include "operator_console/recording_repair.h"
 #include "operator_console/stop_signal.h"
+#include "operator_console/summary.h"
 #include "operator_console/supervisor.h"
 #include "shoal/comms/kernel_limits.h"
 #include "shoal/comms/lcm_bus.h"
 #include "shoal/comms/lcm_url.h"
 #include "shoal/comms/link_model.h"
+#include "shoal/mapping/atomic_file.h"
 #include "shoal/random.h"
 #include "shoal/wire/message_kind.h"
 
@@ -396,6 +398,7 @@ int Mission::run(bool url_was_given) {
     run.nodes = watch_.statuses();
     run.worst_window = watch_.worstWindow();
     std::fputs(finishRun(run).c_str(), stdout);
+    mapping::writeFileAtomically(options_.out + "/summary.html", summaryHtml(readSummaryOf(options_.out)));
     if (lacking.empty()) return 0;
     spdlog::error("{} within {} s: {}",
                   run.converged ? "the recording is not whole" : "the nodes do not agree",

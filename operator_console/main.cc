@@ -32,6 +32,7 @@ int main(int argc, char** argv) {
   console::addEvaluateCommand(app, chosen);
   console::addReplayCommand(app, chosen);
   console::addVerifyCommand(app, chosen);
+  console::addSummaryCommand(app, chosen);
   console::addReproduceCommand(app, chosen);
   console::addTuneCommand(app, chosen);
   console::addQuestionCommands(app, chosen);

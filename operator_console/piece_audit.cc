@@ -11,6 +11,9 @@ namespace {
 std::string nameOf(const mapping::PieceKey& key) {
   const auto& i = key.index;
   if (key.kind == mapping::PieceKind::kTopic) return "topic " + std::to_string(i[0]);
+  if (key.kind == mapping::PieceKind::kPicture) {
+    return "picture " + std::to_string(i[1]) + " of topic " + std::to_string(i[0]);
+  }
   const std::string brick =
       "brick (" + std::to_string(i[0]) + ", " + std::to_string(i[1]) + ", " + std::to_string(i[2]) + ")";
   return (key.kind == mapping::PieceKind::kBrick ? "labels of " : "certainties of ") + brick;
@@ -58,7 +61,7 @@ std::vector<std::string> PieceAudit::lacking(world::RobotId robot, const wire::H
       lines.push_back(owner + nameOf(key) + ", part " + std::to_string(part + 1) + " of " +
                       std::to_string(heard.num_parts));
     }
-    if (key.kind == mapping::PieceKind::kTopic) continue;
+    if (key.kind != mapping::PieceKind::kBrick && key.kind != mapping::PieceKind::kCertainty) continue;
     mapping::PieceKey other = key;
     other.kind =
         key.kind == mapping::PieceKind::kBrick ? mapping::PieceKind::kCertainty : mapping::PieceKind::kBrick;

@@ -7,8 +7,10 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include "fusion_node/picture_files.h"
 #include "operator_console/asking.h"
 #include "operator_console/command.h"
+#include "operator_console/label_pictures.h"
 #include "operator_console/ply.h"
 #include "operator_console/render.h"
 #include "operator_console/terminal.h"
@@ -34,6 +36,7 @@ void labels(Question& q) {
     row["color"] = fmt::format("#{:02x}{:02x}{:02x}", color[0], color[1], color[2]);
   }
   if (q.asking.json) {
+    addPictures(whereOf(q.asking), a["labels"]);
     std::cout << a.dump(2) << '\n';
     return;
   }
@@ -75,11 +78,21 @@ void at(Question& q) {
 
 void exportMap(Question& q) {
   if (q.format == "geotiff") {
-    throw std::invalid_argument("--format geotiff is not built yet; csv, labels, geojson, ply and png are");
+    throw std::invalid_argument(
+        "--format geotiff is not built yet; csv, labels, geojson, ply, png and pictures are");
   }
   const mapping::MissionView view = viewOf(whereOf(q.asking));
   const world::Grid grid(view.cell_size_m);
   std::string content;
+  if (q.format == "pictures") {
+    const auto files = fusion_node::writeLabelPictures(q.out, picturesAt(whereOf(q.asking)));
+    if (q.asking.json) {
+      std::cout << Json{{"format", q.format}, {"folder", q.out}, {"files", files}}.dump(2) << '\n';
+    } else {
+      fmt::print("{} files written to {}\n", files.size(), q.out);
+    }
+    return;
+  }
   if (q.format == "csv") {
     content = mapping::globalMapCsv(view.map, grid);
   } else if (q.format == "labels") {
@@ -89,7 +102,8 @@ void exportMap(Question& q) {
   } else if (q.format == "ply") {
     content = globalMapPly(view.map, grid);
   } else {
-    content = encodePng(render(view.map, grid, fmt::format("mission {}", view.mission)));
+    content = encodePng(render(view.map, grid, fmt::format("mission {}", view.mission), {},
+                               legendPictures(picturesAt(whereOf(q.asking)))));
   }
   mapping::writeFileAtomically(q.out, content);
   if (q.asking.json) {
@@ -129,9 +143,10 @@ void addQuestionCommands(CLI::App& app, Action& chosen) {
   const auto [export_command, export_question] = add("export", "the map as a file", exportMap);
   export_command
       ->add_option("--format", export_question->format,
-                   "csv (cells), labels (CSV of the legend), geojson (patches), ply (points) or png")
+                   "csv (cells), labels (CSV of the legend), geojson (patches), ply (points), png, or\n"
+                   "pictures (a folder with what each label looks like)")
       ->required()
-      ->check(CLI::IsMember({"csv", "labels", "geojson", "ply", "geotiff", "png"}));
+      ->check(CLI::IsMember({"csv", "labels", "geojson", "ply", "geotiff", "png", "pictures"}));
   export_command->add_option("--out", export_question->out, "file to write")->required();
   export_command->footer(
       "Coordinates are metres of the mission frame in every format.\n\n"

@@ -8,6 +8,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "fusion_node/picture_files.h"
 #include "shoal/mapping/csv.h"
 #include "shoal/mapping/map_files.h"
 #include "shoal/matching/assignment.h"
@@ -21,6 +22,7 @@ constexpr int kLegendWidth = 300;  // pixels
 constexpr int kMargin = 16;
 constexpr int kTitleHeight = 34;
 constexpr int kRowHeight = 24;
+constexpr int kPictureRowHeight = 38;
 constexpr size_t kLegendRows = 24;
 const cv::Scalar kPaper(250, 250, 250), kInk(40, 40, 40), kNothing(225, 225, 225);
 
@@ -68,10 +70,12 @@ cv::Rect boundsOf(const mapping::GlobalMap& map) {
 struct LegendRow {
   Rgb color;
   std::string text;
+  cv::Mat picture = {};
 };
 
 std::vector<LegendRow> legendOf(const mapping::GlobalMap& map, const world::Grid& grid,
-                                const std::map<world::GlobalLabel, Rgb>& colors) {
+                                const std::map<world::GlobalLabel, Rgb>& colors,
+                                const LegendPictures& pictures) {
   const auto areas = mapping::areas(map, grid);
   std::vector<mapping::LabelSummary> labels = map.labels;
   std::ranges::stable_sort(labels, std::ranges::greater{}, &mapping::LabelSummary::cells);
@@ -90,18 +94,28 @@ std::vector<LegendRow> legendOf(const mapping::GlobalMap& map, const world::Grid
                     (label.name.empty() ? std::to_string(number(label.label)) : label.name) + "  " +
                         mapping::fixed(share * 100, 1) + " %  " + std::to_string(label.robots.size()) +
                         (label.robots.size() == 1 ? " robot" : " robots")});
+    if (const auto shown = pictures.find(label.label); shown != pictures.end()) {
+      rows.back().picture = shown->second;
+    }
   }
   return rows;
 }
 
 void drawLegend(cv::Mat& picture, cv::Point at, const std::string& heading,
-                const std::vector<LegendRow>& rows) {
+                const std::vector<LegendRow>& rows, int row_height = kRowHeight) {
   write(picture, heading, at + cv::Point(0, 14), 0.55);
+  const int lift = (row_height - kRowHeight) / 2;  // of what stands in the middle of a higher row
   for (size_t i = 0; i < rows.size(); ++i) {
-    const cv::Point corner = at + cv::Point(0, 26 + static_cast<int>(i) * kRowHeight);
+    const cv::Point corner = at + cv::Point(0, 26 + static_cast<int>(i) * row_height + lift);
     cv::rectangle(picture, {corner, cv::Size(18, 16)}, bgr(rows[i].color), cv::FILLED);
     cv::rectangle(picture, {corner, cv::Size(18, 16)}, kInk, 1);
-    write(picture, rows[i].text, corner + cv::Point(28, 13), 0.45);
+    const int indent = row_height == kRowHeight ? 28 : 66;
+    if (!rows[i].picture.empty()) {
+      const cv::Rect place(corner + cv::Point(26, 8 - rows[i].picture.rows / 2), rows[i].picture.size());
+      rows[i].picture.copyTo(picture(place));
+      cv::rectangle(picture, place, kInk, 1);
+    }
+    write(picture, rows[i].text, corner + cv::Point(indent, 13), 0.45);
   }
 }
 
@@ -116,6 +130,12 @@ Rgb colorOf(world::GlobalLabel label) {
   cv::cvtColor(hsv, color, cv::COLOR_HSV2RGB);
   const cv::Vec3b c = color(0, 0);
   return {c[0], c[1], c[2]};
+}
+
+LegendPictures legendPictures(const mapping::LabelPictures& pictures) {
+  LegendPictures shown;
+  for (const auto& [label, held] : pictures) shown[label] = fusion_node::pixelsOf(held.front());
+  return shown;
 }
 
 std::map<world::GlobalLabel, Rgb> alignedColors(const mapping::GlobalMap& map, const TruthPicture& truth) {
@@ -149,7 +169,7 @@ std::map<world::GlobalLabel, Rgb> alignedColors(const mapping::GlobalMap& map, c
 }
 
 cv::Mat render(const mapping::GlobalMap& map, const world::Grid& grid, const std::string& title,
-               const std::optional<TruthPicture>& truth) {
+               const std::optional<TruthPicture>& truth, const LegendPictures& pictures) {
   if (map.cells.empty()) {
     cv::Mat picture(200, 480, CV_8UC3, kPaper);
     write(picture, title, {kMargin, 30}, 0.6);
@@ -172,13 +192,14 @@ cv::Mat render(const mapping::GlobalMap& map, const world::Grid& grid, const std
   }
   const cv::Rect bounds = boundsOf(map);
   const cv::Mat fused_picture = drawColumns(fused, bounds);
-  const auto rows = legendOf(map, grid, colors);
+  const auto rows = legendOf(map, grid, colors, pictures);
+  const int row_height = pictures.empty() ? kRowHeight : kPictureRowHeight;
   std::vector<LegendRow> class_rows;
   if (truth)
     for (const auto& k : truth->classes) class_rows.push_back({k.rgb, k.name});
 
-  const int legend_height =
-      26 + static_cast<int>(rows.size() + (truth ? class_rows.size() + 2 : 0)) * kRowHeight;
+  const int legend_height = 26 + static_cast<int>(rows.size()) * row_height +
+                            static_cast<int>(truth ? class_rows.size() + 2 : 0) * kRowHeight;
   const int map_width = fused_picture.cols, map_height = fused_picture.rows;
   const int maps = truth ? 2 : 1;
   cv::Mat picture(kTitleHeight + std::max(map_height, legend_height) + 2 * kMargin,
@@ -192,9 +213,10 @@ cv::Mat render(const mapping::GlobalMap& map, const world::Grid& grid, const std
     write(picture, "truth", {left, top - 6});
     left += map_width + kMargin;
   }
-  drawLegend(picture, {left, top}, "labels", rows);
+  drawLegend(picture, {left, top}, "labels", rows, row_height);
   if (truth) {
-    drawLegend(picture, {left, top + (static_cast<int>(rows.size()) + 2) * kRowHeight}, "truth", class_rows);
+    drawLegend(picture, {left, top + static_cast<int>(rows.size()) * row_height + 2 * kRowHeight}, "truth",
+               class_rows);
   }
   return picture;
 }

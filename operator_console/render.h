@@ -12,6 +12,7 @@
 #include <opencv2/core/mat.hpp>
 
 #include "shoal/mapping/global_map.h"
+#include "shoal/mapping/held_pictures.h"
 #include "shoal/world/grid.h"
 #include "shoal/world/world.h"
 
@@ -32,11 +33,16 @@ struct TruthPicture {
 /// overlap most (optimal assignment, one label a class) and take their colours; other labels keep colorOf().
 std::map<world::GlobalLabel, Rgb> alignedColors(const mapping::GlobalMap& map, const TruthPicture& truth);
 
+/// What labels look like, square, BGR, for the legend.
+using LegendPictures = std::map<world::GlobalLabel, cv::Mat>;
+LegendPictures legendPictures(const mapping::LabelPictures& pictures);
+
 /// Draws the map from above, north (+Y) up, the highest cell of each column, with a legend of the largest
-/// labels, and the truth beside it when given. An empty map gives a picture that says so.
+/// labels, their pictures beside them, and the truth beside it when given. An empty map gives a picture that
+/// says so.
 /// @returns BGR, CV_8UC3. Pure.
 cv::Mat render(const mapping::GlobalMap& map, const world::Grid& grid, const std::string& title,
-               const std::optional<TruthPicture>& truth = {});
+               const std::optional<TruthPicture>& truth = {}, const LegendPictures& pictures = {});
 
 /// PNG bytes of a picture.
 std::string encodePng(const cv::Mat& picture);

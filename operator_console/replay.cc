@@ -9,6 +9,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include "fusion_node/picture_files.h"
 #include "operator_console/log_check.h"
 #include "operator_console/render.h"
 #include "shoal/mapping/atomic_file.h"
@@ -82,12 +83,22 @@ Replay replay(const std::string& log, const std::string& out, const matching::Ma
   };
   write("global_map.csv", mapping::globalMapCsv(state.map(), grid));
   write("labels.csv", mapping::labelsCsv(state.map(), grid));
+  const auto pictures = mapping::picturesOfLabels(state.map(), state.beliefs());
   write("global_map.png", encodePng(render(state.map(), grid,
                                            fmt::format("mission {}, {} labels", replay.recorded.mission,
-                                                       state.map().labels.size()))));
+                                                       state.map().labels.size()),
+                                           {}, legendPictures(pictures))));
+  for (const std::string& file : fusion_node::writeLabelPictures(out + "/pictures", pictures)) {
+    replay.files.push_back("pictures/" + file);
+  }
   for (const world::RobotId robot : robotsOf(state)) {
     write("robots/" + world::name(robot) + "/map.csv",
           mapping::beliefCsv(heardMap(state.beliefs(), robot), grid));
+    const std::string folder = "robots/" + world::name(robot) + "/pictures";
+    for (const std::string& file :
+         fusion_node::writeTopicPictures(out + "/" + folder, state.beliefs(), robot)) {
+      replay.files.push_back(folder + "/" + file);
+    }
   }
   return replay;
 }

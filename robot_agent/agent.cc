@@ -9,6 +9,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include "fusion_node/picture_files.h"
 #include "fusion_node/process.h"
 #include "shoal/comms/channels.h"
 #include "shoal/mapping/atomic_file.h"
@@ -35,6 +36,8 @@ comms::TrafficClass trafficOf(mapping::PieceKind kind) {
       return comms::TrafficClass::kTopics;
     case mapping::PieceKind::kBrick:
       return comms::TrafficClass::kBricks;
+    case mapping::PieceKind::kPicture:
+      return comms::TrafficClass::kPictures;
     case mapping::PieceKind::kEdit:
       return comms::TrafficClass::kMatches;
     case mapping::PieceKind::kCertainty:
@@ -178,8 +181,10 @@ void Agent::takeIn(const world::Observation& observation) {
   const robot::StageTimes& t = explorer_.lastTimes();
   const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
   total_ms_ += took.count();
-  spdlog::debug("observation {}: words {:.1f} ms, topics {:.1f} ms, belief {:.1f} ms, publish {:.1f} ms",
-                observation.number, t.words_ms, t.topics_ms, t.belief_ms, took.count() - t.total());
+  spdlog::debug(
+      "observation {}: words {:.1f} ms, topics {:.1f} ms, belief {:.1f} ms, pictures {:.1f} ms, publish "
+      "{:.1f} ms",
+      observation.number, t.words_ms, t.topics_ms, t.belief_ms, t.pictures_ms, took.count() - t.total());
 }
 
 // Offers what has changed since the last time.
@@ -188,11 +193,7 @@ void Agent::publish() {
   for (const mapping::Piece& whole : changes_.update(belief_)) {
     const std::string channel = comms::channelName(name_, wire::channelKind(wire::kindOf(whole)));
     const auto parts = wire::cutToFit(whole, mostBytes(channel, options_.budget));
-    for (const mapping::Piece& part : parts) {
-      own_.apply(part);
-      others_.apply(part);
-      offer(part);
-    }
+    for (const mapping::Piece& part : parts) say(part);
     int32_t& offered = num_parts_[whole.key];
     for (auto stale = static_cast<int32_t>(parts.size()); stale < offered; ++stale) {
       sender_.forget(queueKey(whole.key, stale));
@@ -200,6 +201,19 @@ void Agent::publish() {
     }
     offered = static_cast<int32_t>(parts.size());
   }
+  for (const mapping::Piece& layer : picture_changes_.update(belief_)) {
+    say(layer);
+    for (int32_t stale = layer.num_parts; stale < wire::kMaxPictureLayers; ++stale) {
+      sender_.forget(queueKey(layer.key, stale));
+      said_.erase(queueKey(layer.key, stale));
+    }
+  }
+}
+
+void Agent::say(const mapping::Piece& part) {
+  own_.apply(part);
+  others_.apply(part);
+  offer(part);
 }
 
 // Bricks that wait share datagrams.
@@ -325,6 +339,7 @@ void Agent::write() {
   if (options_.out_dir.empty()) return;
   const std::string folder = options_.out_dir + "/robots/" + name_;
   writeOut(folder, belief_, options_.explorer.cell_size_m, path_);
+  fusion_node::writeTopicPictures(folder + "/pictures", own_, options_.explorer.robot);
   if (!options_.fuse) return;
   const world::Grid grid(options_.explorer.cell_size_m);
   others_.refreshMap();

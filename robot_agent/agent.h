@@ -18,6 +18,7 @@
 #include "shoal/mapping/belief_pieces.h"
 #include "shoal/mapping/poses_file.h"
 #include "shoal/robot/explorer.h"
+#include "shoal/wire/picture_pieces.h"
 #include "shoal/world/source.h"
 
 namespace shoal::robot_agent {
@@ -57,6 +58,7 @@ class Agent {
   void save();
   void takeIn(const world::Observation& observation);
   void publish();
+  void say(const mapping::Piece& part);
   void offer(const mapping::Piece& part);
   void passTimeUntil(int64_t to_us);
   void listen(int timeout_ms);
@@ -71,6 +73,7 @@ class Agent {
   comms::Bus& bus_;
   robot::Explorer explorer_;
   mapping::BeliefChanges changes_;
+  wire::PictureChanges picture_changes_;
   mapping::LocalBelief belief_;
   mapping::BeliefStore own_;                                 // what was said, for its digest
   std::map<mapping::PieceKey, int32_t> num_parts_;           // keys in the send queue

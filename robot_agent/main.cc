@@ -162,6 +162,7 @@ int run(Flags flags) {
 
   const Source from = isLive(flags) ? openLive(flags, number(*id)) : openPlace(flags, number(*id));
   options.explorer.cell_size_m = from.cell_size_m;
+  if (flags.single) options.explorer.keeps_pictures = false;  // nobody to show them to
   world::ObservationSource& source = *from.source;
   if (flags.single) {
     robot_agent::runAlone(options, source);
@@ -183,6 +184,7 @@ int run(Flags flags) {
 
 int main(int argc, char** argv) {
   Flags f;
+  f.agent.explorer.keeps_pictures = true;
   CLI::App app{"One robot: explores, invents labels, and tells the others under a byte budget.",
                "robot_agent"};
   app.set_version_flag("--version", std::string("robot_agent ") + version() + " (" + commit() + ")");
@@ -262,6 +264,8 @@ int main(int argc, char** argv) {
   app.add_option("--start-s", f.start_s, "mission time at which the flight begins, after a restart")
       ->check(CLI::Range(0.0, 1e9))
       ->capture_default_str();
+  app.add_flag("!--no-pictures", f.agent.explorer.keeps_pictures,
+               "keep and send no pictures of what topics look like");
   app.add_flag("--linger", f.agent.linger, "stay after landing until told to stop");
   app.add_flag("--single", f.single, "fly everybody's shares alone, off the link, into --out itself");
   app.add_option("--checkpoint", f.checkpoint,

@@ -20,13 +20,14 @@ enum class TrafficClass : uint8_t {
   kTopics,
   kBricks,
   kCertainty,
+  kPictures,
   kLocal,
   kRequests,
   kRepairs
 };
-inline constexpr size_t kNumTrafficClasses = 8;
+inline constexpr size_t kNumTrafficClasses = 9;
 inline constexpr std::array<std::string_view, kNumTrafficClasses> kTrafficClassNames = {
-    "heartbeat", "matches", "topics", "bricks", "certainty", "local", "requests", "repairs"};
+    "heartbeat", "matches", "topics", "bricks", "certainty", "pictures", "local", "requests", "repairs"};
 
 /// A message, opaque here: channel and encoded bytes.
 struct Packet {

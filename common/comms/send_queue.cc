@@ -23,10 +23,12 @@ SendQueue::SendQueue(const SendQueueOptions& options)
   of(TrafficClass::kTopics).weight = options.topics_weight;
   of(TrafficClass::kBricks).weight = options.bricks_weight;
   of(TrafficClass::kCertainty).weight = options.certainty_weight;
+  of(TrafficClass::kPictures).weight = options.pictures_weight;
   of(TrafficClass::kRequests).weight = options.requests_weight;
   of(TrafficClass::kRepairs).weight = options.repairs_weight;
-  for (const auto traffic : {TrafficClass::kMatches, TrafficClass::kTopics, TrafficClass::kBricks,
-                             TrafficClass::kCertainty, TrafficClass::kRequests, TrafficClass::kRepairs}) {
+  for (const auto traffic :
+       {TrafficClass::kMatches, TrafficClass::kTopics, TrafficClass::kBricks, TrafficClass::kCertainty,
+        TrafficClass::kPictures, TrafficClass::kRequests, TrafficClass::kRepairs}) {
     const int64_t weight = of(traffic).weight;
     if (weight < 1 || weight > kStride) {
       throw std::invalid_argument("the weight of class " +

@@ -20,6 +20,7 @@ struct SendQueueOptions {
   int64_t topics_weight = 8;
   int64_t bricks_weight = 4;
   int64_t certainty_weight = 1;
+  int64_t pictures_weight = 1;
   int64_t requests_weight = 8;
   int64_t repairs_weight = 1;
 

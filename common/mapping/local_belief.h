@@ -28,13 +28,28 @@ struct BelievedCell {
   bool operator==(const BelievedCell&) const = default;
 };
 
-/// All that one robot believes at one moment: its topics and its labelled cells.
+/// A picture that shows what a topic looks like, as its robot keeps it.
+struct ExamplePicture {
+  static constexpr int kEdge = 32;  ///< pixels
+
+  world::TopicId topic{};
+  int32_t number = 0;        ///< in [0, kMaxExamples); 0 is the most typical
+  int32_t observation = 0;   ///< at which it became the example, or ceased to be one
+  world::CellIndex cell;     ///< in the middle
+  world::Timestamp seen;     ///< mission time of the image it was cut from
+  std::vector<uint8_t> rgb;  ///< kEdge rows of kEdge pixels of 3 bytes; empty: the example is no more
+  bool operator==(const ExamplePicture&) const = default;
+};
+
+/// All that one robot believes at one moment: its topics, its labelled cells, and pictures of its
+/// topics.
 struct LocalBelief {
   world::RobotId robot{};
   world::Version version;  ///< of the latest observation in it
   std::vector<world::WordGroup> groups;
-  std::vector<BelievedTopic> topics;  ///< ascending by id
-  std::vector<BelievedCell> cells;    ///< ascending by cell
+  std::vector<BelievedTopic> topics;          ///< ascending by id
+  std::vector<BelievedCell> cells;            ///< ascending by cell
+  std::vector<ExamplePicture> examples = {};  ///< ascending by topic, then number
 };
 
 /// A topic's counts as integers fit to travel: divided by a thousandth of their L2 norm, when that is above

@@ -37,6 +37,12 @@ class Hasher {
       add(c.steps);
     }
   }
+  void operator()(const PicturePart& part) {
+    add(part.cell);
+    add(part.seen.us);
+    add(std::ssize(part.layer));
+    for (const uint8_t byte : part.layer) add(byte);
+  }
   void operator()(const Edit& edit) { add(static_cast<int64_t>(contentHash(edit))); }
   uint64_t hash() const { return hash_; }
 

@@ -14,13 +14,14 @@
 namespace shoal::mapping {
 
 /// What kinds of state travel. The numbers are part of the wire format.
-enum class PieceKind : uint8_t { kTopic = 1, kBrick = 2, kCertainty = 3, kEdit = 4 };
+enum class PieceKind : uint8_t { kTopic = 1, kBrick = 2, kCertainty = 3, kEdit = 4, kPicture = 5 };
 
 /// What all operators decided is one share of the state, beside those of the robots.
 inline constexpr world::RobotId kOperators{10000};
 
 /// Names one unit of replicated state: a robot's topic (index = {topic id, 0, 0}), or a brick of its label
-/// map or of its certainty (index = brick coordinates); or an operator's edit: keyOf().
+/// map or of its certainty (index = brick coordinates); or an operator's edit: keyOf();
+/// or an example picture of a topic (index = {topic id, number of the example, 0}).
 struct PieceKey {
   world::RobotId robot{};
   PieceKind kind = PieceKind::kTopic;
@@ -73,13 +74,26 @@ struct CertaintyPart {
   bool operator==(const CertaintyPart&) const = default;
 };
 
+/// A topic has at most so many example pictures, numbered from 0: the most typical.
+inline constexpr int32_t kMaxExamples = 8;
+
+/// One layer of a picture of a cell that shows what a topic looks like. Part 0 is a small picture, usable
+/// alone; later parts sharpen it. The layers are bytes of wire/picture_coder.h, opaque here: nobody decodes
+/// them before somebody looks.
+struct PicturePart {
+  world::CellIndex cell;       ///< what it shows, in the middle
+  world::Timestamp seen;       ///< mission time of the image
+  std::vector<uint8_t> layer;  ///< empty: the example is no more (part 0 of 1)
+  bool operator==(const PicturePart&) const = default;
+};
+
 /// One datagram's worth of replicated state. Same key, version and part: same content.
 struct Piece {
   PieceKey key;
   world::Version version;
   int32_t part = 0;       ///< in [0, num_parts)
   int32_t num_parts = 1;  ///< in [1, 255]
-  std::variant<TopicPart, BrickPart, CertaintyPart, Edit> content;
+  std::variant<TopicPart, BrickPart, CertaintyPart, Edit, PicturePart> content;
   bool operator==(const Piece&) const = default;
 };
 

@@ -7,6 +7,7 @@
 
 #include "shoal/mapping/area_answer.h"
 #include "shoal/mapping/edits_answer.h"
+#include "shoal/mapping/held_pictures.h"
 #include "shoal/mapping/map_files.h"
 #include "shoal/mapping/node_answer.h"
 #include "shoal/mapping/why_answer.h"
@@ -31,6 +32,11 @@ PatchFilter filterOf(const Json& question) {
   return filter;
 }
 
+Json picturesOf(const Witness& witness) {
+  const BeliefStore& beliefs = witness.beliefs();  // first: of a finished run, it completes the map
+  return picturesAnswer(picturesOfLabels(witness.view.map, beliefs));
+}
+
 Json mapAnswer(const MissionView& view) {
   const world::Grid grid(view.cell_size_m);
   return {{"cell_size_m", view.cell_size_m},
@@ -47,12 +53,14 @@ Json answer(const Witness& witness, const Json& question) {
     if (query == "status") return statusAnswer(view);
     if (query == "labels") return labelsAnswer(view);
     if (query == "map") return mapAnswer(view);
+    if (query == "pictures") return picturesOf(witness);
     if (query == "at") return atAnswer(view, witness.beliefs(), question.at("x"), question.at("y"));
     if (query == "area") return areaAnswer(view, question.at("label"), filterOf(question));
     if (query == "why") return whyAnswer(view, witness.beliefs(), witness.matcher, question.at("label"));
     if (query == "node") return nodeAnswer(view, witness.beliefs(), question.at("node"));
     if (query == "edits") return editsAnswer(witness.beliefs());
-    return {{"error", "unknown question; questions are status, labels, map, at, area, why, node and edits"}};
+    return {{"error",
+             "unknown question; questions are status, labels, map, pictures, at, area, why, node and edits"}};
   } catch (const Json::exception& error) {
     return {{"error", error.what()}};
   } catch (const std::invalid_argument& error) {

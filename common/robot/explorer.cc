@@ -33,7 +33,9 @@ Explorer::Explorer(const ExplorerOptions& options)
       words_(vision::makeWordExtractor(options.profile)),
       grid_(options.cell_size_m),
       hyperparameters_(options.hyperparameters.value_or(hyperparametersOf(options.profile))),
-      learner_(topics::makeLearner(hyperparameters_, words_->groups(), options.seed, options.robot)) {}
+      learner_(topics::makeLearner(hyperparameters_, words_->groups(), options.seed, options.robot)) {
+  if (options.keeps_pictures) book_.emplace(options.cell_size_m);
+}
 
 void Explorer::observe(const world::Observation& observation) {
   SHOAL_DEMAND(observation.number > last_observation_);
@@ -42,18 +44,33 @@ void Explorer::observe(const world::Observation& observation) {
   const double words_ms = watch.lapMs();
   learn(words);
   times_.words_ms = words_ms;
+  if (!book_) return;
+  mapping::LocalBelief belief = believe();
+  watch.lapMs();
+  book_->look(observation, words, belief);
+  belief.examples = book_->examples();
+  believed_ = std::move(belief);
+  times_.pictures_ms = watch.lapMs();
 }
 
 void Explorer::learn(const world::WordsInCells& words) {
   SHOAL_DEMAND(words.observation > last_observation_);
   Stopwatch watch;
   learner_->observe(words);
-  times_ = {.words_ms = 0, .topics_ms = watch.lapMs(), .belief_ms = 0};
+  believed_.reset();
+  times_ = {.words_ms = 0, .topics_ms = watch.lapMs(), .belief_ms = 0, .pictures_ms = 0};
   last_observation_ = words.observation;
   dropped_words_ += words.dropped_words;
 }
 
 mapping::LocalBelief Explorer::belief() const {
+  if (believed_) return *believed_;
+  mapping::LocalBelief belief = believe();
+  if (book_) belief.examples = book_->examples();
+  return belief;
+}
+
+mapping::LocalBelief Explorer::believe() const {
   Stopwatch watch;
   topics::Snapshot snapshot = learner_->snapshot();
   mapping::LocalBelief belief{.robot = options_.robot,

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "shoal/mapping/local_belief.h"
+#include "shoal/robot/example_book.h"
 #include "shoal/topics/make_learner.h"
 #include "shoal/topics/topic_model.h"
 #include "shoal/vision/word_extractor.h"
@@ -25,12 +26,13 @@ struct ExplorerOptions {
   double cell_size_m = 0.8;                                       ///< edge of a cell, > 0
   int32_t epoch = 0;                                              ///< grows when the robot has lost its disk
   std::optional<topics::LearnerHyperparameters> hyperparameters;  ///< other than the profile's, to experiment
+  bool keeps_pictures = false;  ///< of what its topics look like; changes nothing else
 };
 
 /// Milliseconds that the last observation took, by stage.
 struct StageTimes {
-  double words_ms = 0, topics_ms = 0, belief_ms = 0;
-  double total() const { return words_ms + topics_ms + belief_ms; }
+  double words_ms = 0, topics_ms = 0, belief_ms = 0, pictures_ms = 0;
+  double total() const { return words_ms + topics_ms + belief_ms + pictures_ms; }
 };
 
 /// One robot's mind: takes observations, learns topics, hands out what it believes. The process and the
@@ -74,11 +76,15 @@ class Explorer {
   const StageTimes& lastTimes() const { return times_; }
 
  private:
+  mapping::LocalBelief believe() const;
+
   ExplorerOptions options_;
   std::unique_ptr<vision::WordExtractor> words_;
   world::Grid grid_;
   topics::LearnerHyperparameters hyperparameters_;
   std::unique_ptr<topics::Learner> learner_;
+  std::optional<ExampleBook> book_;               // when it keeps pictures
+  std::optional<mapping::LocalBelief> believed_;  // of the last observation, when the book has seen it
   int32_t last_observation_ = -1;
   int64_t dropped_words_ = 0;
   mutable StageTimes times_;  // measured, never part of a result

@@ -11,7 +11,7 @@ namespace shoal::robot {
 namespace {
 
 const std::string kKind = "shoalEXP";
-constexpr uint32_t kVersion = 1;
+constexpr uint32_t kVersion = 2;
 
 }  // namespace
 
@@ -24,6 +24,7 @@ std::vector<uint8_t> Explorer::checkpoint() const {
   out.u64(camera.size());
   for (const int64_t number : camera) out.i64(number);
   out.bytes(learner_->checkpoint());
+  out.bytes(book_ ? book_->checkpoint() : std::vector<uint8_t>{});
   return std::move(out).finish();
 }
 
@@ -37,6 +38,11 @@ void Explorer::restore(std::span<const uint8_t> checkpoint) {
   for (int64_t& number : camera) number = in.i64();
   auto learner =
       topics::resumeLearner(hyperparameters_, words_->groups(), options_.seed, options_.robot, in.bytes());
+  std::optional<ExampleBook> book;
+  if (const auto pictures = in.bytes(); book_) {
+    book.emplace(options_.cell_size_m);
+    book->restore(pictures, words_->vocabularySize());
+  }
   in.finish();
   try {
     words_->resume(camera);
@@ -44,6 +50,8 @@ void Explorer::restore(std::span<const uint8_t> checkpoint) {
     in.demand(false, error.what());
   }
   learner_ = std::move(learner);
+  book_ = std::move(book);
+  believed_.reset();
   last_observation_ = last_observation;
   dropped_words_ = dropped_words;
 }

@@ -30,7 +30,7 @@ struct Heartbeat {
     uint32_t digest = 0;  ///< shareDigest() of what it holds
     bool operator==(const Share&) const = default;
   };
-  static constexpr size_t kNumClasses = 6;
+  static constexpr size_t kNumClasses = 7;
 
   world::Timestamp time;         ///< mission time of sending, in [0, kMaxTimeUs]
   int32_t mission = 0;           ///< mission id
@@ -63,7 +63,7 @@ struct Heartbeat {
 /// The 32 bits of a robot's digest that travel in rosters.
 constexpr uint32_t shareDigest(uint64_t digest) { return static_cast<uint32_t>(digest ^ digest >> 32); }
 
-/// A heartbeat as heartbeat_t: 142 bytes, 6 to 60 for the classes, about 4 a robot of the roster.
+/// A heartbeat as heartbeat_t: 142 bytes, 7 to 70 for the classes, about 4 a robot of the roster.
 ///
 /// A roster that does not fit is cut at its high end; 256 robots fit when their numbers have few gaps.
 /// @throws std::invalid_argument naming what is out of range, or when `max_payload` is below 200.

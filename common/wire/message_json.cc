@@ -47,7 +47,8 @@ json fields(const Heartbeat& h) {
          {"rejected", h.rejected},
          {"conflicts", h.conflicts},
          {"ms_per_frame", double{h.ms_per_frame}}};
-  constexpr std::array kClasses = {"heartbeat", "matches", "topics", "bricks", "certainty", "local"};
+  constexpr std::array kClasses = {"heartbeat", "matches", "topics",   "bricks", "certainty",
+                                   "pictures",  "local",   "requests", "repairs"};
   for (size_t c = 0; c < kClasses.size(); ++c) j["class_bytes"][kClasses[c]] = h.class_bytes[c];
   j["roster"] = json::array();
   for (const auto& share : h.roster) j["roster"].push_back(json::array({number(share.robot), share.digest}));
@@ -92,6 +93,19 @@ json fields(const mapping::Piece& piece, const mapping::TopicPart& topic) {
   return j;
 }
 
+json fields(const mapping::Piece& piece, const mapping::PicturePart& picture) {
+  return {{"part", piece.part},
+          {"num_parts", piece.num_parts},
+          {"robot", number(piece.key.robot)},
+          {"epoch", piece.version.epoch},
+          {"observation", piece.version.observation},
+          {"topic", piece.key.index[0]},
+          {"example", piece.key.index[1]},
+          {"cell", arrayOf(picture.cell)},
+          {"seen_us", picture.seen.us},
+          {"layer", picture.layer}};
+}
+
 json brickFields(const mapping::Piece& piece) {
   json j{{"part", piece.part},
          {"num_parts", piece.num_parts},
@@ -113,6 +127,7 @@ json fields(const std::vector<mapping::Piece>& pieces) {
   const mapping::Piece& first = pieces.front();
   if (const auto* edit = std::get_if<mapping::Edit>(&first.content)) return fields(*edit);
   if (const auto* topic = std::get_if<mapping::TopicPart>(&first.content)) return fields(first, *topic);
+  if (const auto* picture = std::get_if<mapping::PicturePart>(&first.content)) return fields(first, *picture);
   json j{{"robot", number(first.key.robot)}, {"epoch", first.version.epoch}};
   json& bricks = j[std::holds_alternative<mapping::BrickPart>(first.content) ? "bricks" : "certain_bricks"];
   for (const mapping::Piece& piece : pieces) bricks.push_back(brickFields(piece));
@@ -190,6 +205,8 @@ json messageJson(const std::string& channel, std::span<const uint8_t> bytes) {
     case MessageKind::kBrick:
     case MessageKind::kCertainty:
     case MessageKind::kEdit:
+      return told(decodePieces(header->kind, bytes));
+    case MessageKind::kPicture:
       return told(decodePieces(header->kind, bytes));
     case MessageKind::kMatches:
       return told(decodeMatches(bytes));

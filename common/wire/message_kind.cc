@@ -10,6 +10,7 @@
 #include <shoal/labels_t.hpp>
 #include <shoal/map_t.hpp>
 #include <shoal/matches_t.hpp>
+#include <shoal/picture_t.hpp>
 #include <shoal/repair_t.hpp>
 #include <shoal/request_t.hpp>
 #include <shoal/topics_t.hpp>
@@ -57,6 +58,8 @@ size_t fixedBytesOf(MessageKind kind) {
       return fixedBytes<request_t>();
     case MessageKind::kRepair:
       return fixedBytes<repair_t>();
+    case MessageKind::kPicture:
+      return fixedBytes<picture_t>();
   }
   SHOAL_DEMAND(false);
   return 0;
@@ -84,6 +87,8 @@ int64_t fingerprintOf(MessageKind kind) {
       return request_t::getHash();
     case MessageKind::kRepair:
       return repair_t::getHash();
+    case MessageKind::kPicture:
+      return picture_t::getHash();
   }
   SHOAL_DEMAND(false);
   return 0;

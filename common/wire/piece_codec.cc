@@ -12,6 +12,7 @@
 #include "shoal/wire/edit_message.h"
 #include "shoal/wire/message.h"
 #include "shoal/wire/payloads.h"
+#include "shoal/wire/picture_message.h"
 
 namespace shoal::wire {
 namespace {
@@ -106,6 +107,8 @@ Bytes encodeValid(std::span<const Piece* const> pieces, int32_t mission, world::
   const Piece& first = *pieces.front();
   if (std::holds_alternative<TopicPart>(first.content)) return encodeTopicMessage(first, mission, time);
   if (const auto* edit = std::get_if<mapping::Edit>(&first.content)) return encodeEdit(*edit, mission, time);
+  if (std::holds_alternative<mapping::PicturePart>(first.content))
+    return encodePictureMessage(first, mission, time);
   if (std::holds_alternative<BrickPart>(first.content))
     return pack(frameOfBricks(pieces, &bricks_t::bricks, mission, time), encodeBricks(pieces));
   return pack(frameOfBricks(pieces, &certainties_t::certain_bricks, mission, time),
@@ -156,6 +159,12 @@ Result<std::vector<Piece>> decodeEdits(std::span<const uint8_t> bytes) {
   return std::vector{std::move(*edit)};
 }
 
+Result<std::vector<Piece>> decodePictures(std::span<const uint8_t> bytes) {
+  auto picture = decodePictureMessage(bytes);
+  if (!picture) return picture.error();
+  return std::vector{std::move(*picture)};
+}
+
 size_t numCells(const Piece& piece) {
   if (const auto* brick = std::get_if<BrickPart>(&piece.content)) return brick->cells.size();
   if (const auto* certainty = std::get_if<CertaintyPart>(&piece.content)) return certainty->cells.size();
@@ -198,8 +207,10 @@ MessageKind kindOf(const Piece& piece) {
       return MessageKind::kBrick;
     case 2:
       return MessageKind::kCertainty;
-    default:
+    case 3:
       return MessageKind::kEdit;
+    default:
+      return MessageKind::kPicture;
   }
 }
 
@@ -212,6 +223,8 @@ std::string fault(const Piece& piece) {
   if (piece.part < 0 || piece.part >= piece.num_parts) return "parts are numbered from 0 to num_parts - 1";
   if (const auto* topic = std::get_if<TopicPart>(&piece.content)) return faultOf(*topic, piece.key);
   if (const auto* brick = std::get_if<BrickPart>(&piece.content)) return faultOf(*brick, piece.key);
+  if (const auto* picture = std::get_if<mapping::PicturePart>(&piece.content))
+    return faultOf(*picture, piece);
   return faultOf(std::get<CertaintyPart>(piece.content), piece.key);
 }
 
@@ -254,7 +267,8 @@ std::optional<Bytes> encodeTogether(std::span<const Piece* const> pieces, int32_
 
 std::vector<Piece> cutToFit(const Piece& whole, size_t max_payload) {
   if (const std::string why = fault(whole); !why.empty()) throw std::invalid_argument("piece: " + why);
-  if (std::holds_alternative<mapping::Edit>(whole.content)) return {whole};  // always small
+  if (std::holds_alternative<mapping::Edit>(whole.content)) return {whole};         // always small
+  if (std::holds_alternative<mapping::PicturePart>(whole.content)) return {whole};  // cut into layers already
   if (whole.num_parts != 1) throw std::invalid_argument("piece: it is a part already");
   const auto cut = [&](const auto& part, size_t count, size_t max_run) {
     const auto make = [&](size_t begin, size_t end) {
@@ -317,6 +331,8 @@ Result<std::vector<Piece>> decodePieces(MessageKind kind, std::span<const uint8_
                                           decodeCertainties);
       case MessageKind::kEdit:
         return decodeEdits(bytes);
+      case MessageKind::kPicture:
+        return decodePictures(bytes);
       default:
         return DecodeError::kWrongType;
     }

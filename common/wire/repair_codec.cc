@@ -24,6 +24,8 @@ std::optional<MessageKind> messageOf(uint8_t piece_kind) {
       return MessageKind::kCertainty;
     case mapping::PieceKind::kEdit:
       return MessageKind::kEdit;
+    case mapping::PieceKind::kPicture:
+      return MessageKind::kPicture;
   }
   return std::nullopt;
 }

@@ -10,6 +10,8 @@
 #include "shoal/wire/labels_codec.h"
 #include "shoal/wire/map_codec.h"
 #include "shoal/wire/matches_codec.h"
+#include "shoal/wire/picture_coder.h"
+#include "shoal/wire/picture_pieces.h"
 #include "shoal/wire/piece_codec.h"
 #include "shoal/wire/repair_codec.h"
 
@@ -56,7 +58,7 @@ Heartbeat heartbeat() {
   h.rejected = 2;
   h.conflicts = 0;
   h.ms_per_frame = 17.75f;
-  h.class_bytes = {12'000, 0, 40'000, 40'000, 6'765, 0};
+  h.class_bytes = {12'000, 0, 40'000, 40'000, 6'165, 600, 0};
   for (int r = 0; r < 12; ++r) h.roster.push_back({RobotId{r}, 0x1000'0000u * static_cast<uint32_t>(r) + 7});
   return h;
 }
@@ -108,6 +110,25 @@ std::vector<mapping::LabelSummary> labels() {
 }
 
 // One of each operation.
+std::vector<std::pair<std::string, Piece>> pictures() {
+  std::vector<uint8_t> rgb(kPictureBytes);  // a disk on a slope
+  for (int y = 0; y < kPictureEdge; ++y) {
+    for (int x = 0; x < kPictureEdge; ++x) {
+      const size_t i = 3 * static_cast<size_t>(y * kPictureEdge + x);
+      const bool inside = (x - 12) * (x - 12) + (y - 18) * (y - 18) < 80;
+      rgb[i] = static_cast<uint8_t>(inside ? 200 : 40 + 2 * x);
+      rgb[i + 1] = static_cast<uint8_t>(inside ? 90 : 120 + 2 * y);
+      rgb[i + 2] = static_cast<uint8_t>(inside ? 60 : 130);
+    }
+  }
+  const mapping::ExamplePicture example{TopicId{12}, 1, 54, {-31, 17, 0}, {53'000'000}, rgb};
+  const mapping::ExamplePicture gone{TopicId{3}, 0, 60, {-31, 17, 0}, {53'000'000}, {}};
+  const auto layers = picturePieces(example, RobotId{3}, 1);
+  return {{"picture_0", layers.at(0)},
+          {"picture_1", layers.at(1)},
+          {"picture_gone", picturePieces(gone, RobotId{3}, 1).at(0)}};
+}
+
 std::vector<std::pair<std::string, mapping::Edit>> edits() {
   const mapping::TopicRef a{RobotId{1}, 0, TopicId{4}}, b{RobotId{11}, 2, TopicId{9999}};
   return {{"edit_name", {{"OPERATOR", 1}, {50'000'000}, mapping::NameEdit{a, "Seegr\xc3\xa4ser"}}},
@@ -155,12 +176,15 @@ std::vector<Example> goldenExamples() {
   examples.push_back({"labels", MessageKind::kLabels, encodeLabels(labels(), 77, kMission, time).at(0)});
   examples.push_back({"map_0", MessageKind::kMap, encodeMap(globalMap(), 77, kMission, time).at(0)});
   examples.push_back({"map_1", MessageKind::kMap, encodeMap(globalMap(), 77, kMission, time).at(1)});
+  for (const auto& [name, piece] : pictures()) {
+    examples.push_back({name, MessageKind::kPicture, encode(piece, kMission, time)});
+  }
   for (const auto& [name, edit] : edits()) {
     examples.push_back({name, MessageKind::kEdit, encode(mapping::pieceOf(edit), kMission, time)});
   }
   examples.push_back({"request", MessageKind::kRequest, encodeRequest(talk(), kMission, time)});
   examples.push_back({"repair_topic", MessageKind::kRepair, encodeRepair(topic(), kMission, time)});
-  examples.push_back({"repair_brick", MessageKind::kRepair, encodeRepair(brick(), kMission, time)});
+  examples.push_back({"repair_brick", MessageKind::kRepair, encodeRepair(bricks()[0], kMission, time)});
   examples.push_back({"repair_edit", MessageKind::kRepair,
                       encodeRepair(mapping::pieceOf(edits()[1].second), kMission, time)});
   return examples;
@@ -182,6 +206,7 @@ Bytes decodeAndEncode(MessageKind kind, std::span<const uint8_t> bytes, DecodeEr
     case MessageKind::kBrick:
     case MessageKind::kCertainty:
     case MessageKind::kEdit:
+    case MessageKind::kPicture:
       return again(decodePieces(kind, bytes),
                    [&](const std::vector<Piece>& pieces) { return encode(pieces, mission, time); });
     case MessageKind::kMatches:

@@ -40,6 +40,8 @@ size_t fixedBytesOf(MessageKind kind) {
       return 41;
     case MessageKind::kMap:
       return 57;
+    case MessageKind::kPicture:
+      return 62;
     case MessageKind::kEdit:
       return 60;
     case MessageKind::kRequest:
@@ -147,17 +149,22 @@ TEST_P(GoldenTest, CraftedMessagesAreRefusedByReason) {
   EXPECT_EQ(crafted([](Bytes& b) { b.resize(65'499); }), DecodeError::kTooLong);
   for (const uint32_t n : {0xffffffffu, 0x80000000u, 2'000'000'000u, 300'000'000u, 100'000'000u, 65536u})
     EXPECT_EQ(crafted([&](Bytes& b) { setLength(b, fixed, n); }), DecodeError::kBadLength) << n;
-  EXPECT_EQ(crafted([&](Bytes& b) { setLength(b, fixed, 0); }), DecodeError::kTrailingBytes);
+  const bool is_empty = example.bytes.size() == fixed;  // of what is no more: 0 is its length
+  if (!is_empty) {
+    EXPECT_EQ(crafted([&](Bytes& b) { setLength(b, fixed, 0); }), DecodeError::kTrailingBytes);
+  }
   EXPECT_EQ(crafted([](Bytes& b) { b[kFormatOffset] = 2; }), DecodeError::kUnknownFormat);
   EXPECT_EQ(crafted([](Bytes& b) { b[19] ^= 4; }), DecodeError::kChecksum);
   EXPECT_EQ(crafted([](Bytes& b) { b[8] |= 0x80; }),
             DecodeError::kBadField);  // before the year 1970, so to say
   // As long as all that declare a payload, and nothing in it.
-  EXPECT_EQ(crafted([&](Bytes& b) {
-              b.resize(fixed);
-              setLength(b, fixed, 0);
-            }),
-            DecodeError::kChecksum);
+  if (!is_empty) {
+    EXPECT_EQ(crafted([&](Bytes& b) {
+                b.resize(fixed);
+                setLength(b, fixed, 0);
+              }),
+              DecodeError::kChecksum);
+  }
   // A channel of one kind that carries another.
   for (const Example& other : goldenExamples()) {
     if (other.kind != example.kind) {

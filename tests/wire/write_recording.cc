@@ -24,6 +24,8 @@
 #include "shoal/wire/matches_codec.h"
 #include "shoal/wire/message_json.h"
 #include "shoal/wire/message_kind.h"
+#include "shoal/wire/picture_coder.h"
+#include "shoal/wire/picture_pieces.h"
 #include "shoal/wire/piece_codec.h"
 
 namespace shoal::wire {
@@ -93,6 +95,19 @@ std::vector<Piece> wholePieces(RobotId robot, int32_t observation, Random& rando
     }
     pieces.push_back(std::move(topic));
   }
+  for (int t = 0; t < 3; ++t) {  // the last is no more
+    mapping::ExamplePicture example{.topic = world::TopicId{3 * t + 1},
+                                    .number = t,
+                                    .observation = observation,
+                                    .cell = {t, -5, number(robot)},
+                                    .seen = {1'000'000 * (observation - t)},
+                                    .rgb = {}};
+    while (t < 2 && example.rgb.size() < kPictureBytes) {
+      const auto i = static_cast<uint32_t>(example.rgb.size());
+      example.rgb.push_back(static_cast<uint8_t>(i * i / 700 % 200 + random.below(30)));
+    }
+    for (Piece& layer : picturePieces(example, robot, 0)) pieces.push_back(std::move(layer));
+  }
   for (Piece& piece : pieces) piece.version = {number(robot) == 2 ? 1 : 0, observation};
   return pieces;
 }
@@ -104,7 +119,8 @@ std::vector<comms::Packet> packetsOfRobots(Random& random) {
       for (const Piece& whole : wholePieces(RobotId{r}, observation, random)) {
         for (const Piece& part : cutToFit(whole, kMaxBytes)) {
           packets.push_back(packetOf(part, 1'000'000 * observation));
-          if (part.part == 0 && part.num_parts > 1) {  // a newer version of which this part is never heard
+          const bool is_layer = part.key.kind == mapping::PieceKind::kPicture;
+          if (part.part == 0 && part.num_parts > 1 && !is_layer) {  // a newer version of which this part is never heard
             Piece newer = part;
             newer.version.observation = 60;
             newer.part = 1;

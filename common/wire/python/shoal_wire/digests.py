@@ -41,17 +41,19 @@ def edit_hash(m):
 
 
 def content_hash(m):
-    """The hash of a piece: a decoded message of kind TOPICS, BRICK, CERTAINTY or EDIT."""
+    """The hash of a piece: a decoded message of kind TOPICS, BRICK, CERTAINTY, PICTURE or EDIT."""
     if m["kind"] == "EDIT":
         own = edit_hash(m)
         return hash_of([OPERATORS, 4, m["counter"], _signed(own >> 32), _signed(own & 0xFFFFFFFF), 0, 0, 0, 1, own])
-    number = {"TOPICS": 1, "BRICK": 2, "CERTAINTY": 3}[m["kind"]]
-    index = (m["topic"], 0, 0) if number == 1 else (m["brick_x"], m["brick_y"], m["brick_z"])
+    number = {"TOPICS": 1, "BRICK": 2, "CERTAINTY": 3, "PICTURE": 5}[m["kind"]]
+    index = (m["topic"], m.get("example", 0), 0) if number in (1, 5) else (m["brick_x"], m["brick_y"], m["brick_z"])
     values = [m["robot"], number, *index, m["epoch"], m["observation"], m["part"], m["num_parts"]]
     if number == 1:
         values += [m["created_us"], m["weight"], len(m["group_sizes"]), *m["group_sizes"]]
         for entry in m["words"]:
             values += entry
+    elif number == 5:
+        values += [*m["cell"], m["seen_us"], len(m["layer"]), *m["layer"]]
     else:
         for cell, *rest in m["cells" if number == 2 else "certainties"]:
             values += [*cell, *rest]

@@ -10,6 +10,7 @@ MAX_LABEL = 99999999
 MAX_VOCABULARY = 2**20
 MAX_CELLS = 32768  # of all bricks in a message
 FORMAT = 1
+MAX_LAYER = 540  # bytes of a picture in one message
 STEPS = 63  # certainties are in steps of 1/63
 MASK = 2**64 - 1  # hashes, digests and fingerprints are 64 bits
 
@@ -32,14 +33,16 @@ FIELDS = {
     "EDIT": [
         ("operation", "B"), ("made", "q"), ("counter", "i"), ("robot", "h"), ("epoch", "i"), ("topic", "h"),
         ("other_robot", "h"), ("other_epoch", "i"), ("other_topic", "h"), ("undone", "i")],
+    "PICTURE": _PIECE + [
+        ("topic", "h"), ("example", "B"), ("cell_x", "i"), ("cell_y", "i"), ("cell_z", "i"), ("seen", "q")],
     "REQUEST": [],
     "REPAIR": [("piece_kind", "B")],
     "MAP": [("map_digest", "q"), ("chunk", "i"), ("num_chunks", "i")] + _BRICK + [("fused_cells", "h")],
 }
 LAYOUT = {kind: struct.Struct(">qqiB" + "".join(code for _, code in fields) + "Hi") for kind, fields in FIELDS.items()}
 _LCM_TYPE = {"q": "int64_t", "i": "int32_t", "h": "int16_t", "B": "byte", "d": "double", "f": "float"}
-PIECE_KINDS = {1: "TOPICS", 2: "BRICK", 3: "CERTAINTY", 4: "EDIT"}  # of repairs
-TRAFFIC_CLASSES = ["heartbeat", "matches", "topics", "bricks", "certainty", "local"]
+PIECE_KINDS = {1: "TOPICS", 2: "BRICK", 3: "CERTAINTY", 4: "EDIT", 5: "PICTURE"}  # of repairs
+TRAFFIC_CLASSES = ["heartbeat", "matches", "topics", "bricks", "certainty", "pictures", "local", "requests", "repairs"]
 OPERATIONS = ["name", "link", "unlink", "exclude", "undo"]
 PHASES = ["flying", "landed", "leaving", "node"]
 UNSIGNED = {"own_digest", "state_digest", "map_digest", "map_of_state", "vocabulary"}

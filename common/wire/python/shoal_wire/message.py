@@ -53,8 +53,8 @@ def decode(data):
     words [(word, count)]. In place of the counts, BRICK: bricks, dicts of part, num_parts, observation, brick_x, y, z
     and cells [((x, y, z), topic, seen_us)]. CERTAINTY: certain_bricks, with certainties [((x, y, z), steps)]. MAP: fused_cells [((x, y, z), label, robot, seen_us, steps)]. MATCHES:
     correspondences [(robot, topic, label)]. EDIT: operation, author, counter, made_us, and topics [[robot, epoch,
-    topic]], name, robot or undone [author, counter]. REQUEST: talk in hexadecimal. REPAIR: what the piece's own
-    message holds. LABELS: labels [{label, name, cells, robots, first_seen_us}].
+    topic]], name, robot or undone [author, counter]. PICTURE: cell (x, y, z), seen_us, layer [bytes]. REQUEST: talk in
+    hexadecimal. REPAIR: what the piece's own message holds. LABELS: labels [{label, name, cells, robots, first_seen_us}].
 
     Raises BadMessage, whatever the bytes are.
     """
@@ -66,8 +66,8 @@ def decode(data):
 
 
 def pieces_of(m):
-    """The pieces of state in a decoded message of kind TOPICS, BRICK or CERTAINTY, as content_hash() takes them."""
-    if m["kind"] == "TOPICS":
+    """The pieces of state in a decoded message of a kind of pieces but EDIT, as content_hash() takes them."""
+    if m["kind"] in ("TOPICS", "PICTURE"):
         return [m]
     return [{"kind": m["kind"], "robot": m["robot"], "epoch": m["epoch"], **brick}
             for brick in m["bricks" if m["kind"] == "BRICK" else "certain_bricks"]]
@@ -76,8 +76,8 @@ def pieces_of(m):
 def keys_of(data):
     """(index, version, part) of each of pieces_of(decode(data)), without decoding all of it."""
     m, payload = unframe(data)
-    if m["kind"] == "TOPICS":
-        return [(m["topic"], (m["epoch"], m["observation"]), m["part"])]
+    if m["kind"] in ("TOPICS", "PICTURE"):
+        return [((m["topic"], m.get("example", 0)), (m["epoch"], m["observation"]), m["part"])]
     count = m["bricks" if m["kind"] == "BRICK" else "certain_bricks"]
     require(1 <= count <= 1024, "bricks")
     return [((b["brick_x"], b["brick_y"], b["brick_z"]), (m["epoch"], b["observation"]), b["part"])

@@ -75,7 +75,7 @@ class Mission:
                     self._hear_edit(data)
                 else:
                     self._hear_piece(m, data)
-            elif kind in ("TOPICS", "BRICK", "CERTAINTY"):
+            elif kind in ("TOPICS", "BRICK", "CERTAINTY", "PICTURE"):
                 require(robot_name(m["robot"]) == node, node, "wrong sender")
                 self._hear_piece(m, data)
             elif kind == "EDIT":  # whoever made it, any node may say it

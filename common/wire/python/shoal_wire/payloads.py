@@ -6,8 +6,8 @@ import re
 from . import cells
 from .cell_field import CellField, Geometry
 from .errors import BadMessage, require
-from .layout import (MAX_CELLS, MAX_LABEL, MAX_ROBOT, MAX_TIME, MAX_TOPIC, MAX_VOCABULARY, OPERATIONS, OPERATORS, PHASES,
-                     TRAFFIC_CLASSES)
+from .layout import (MAX_CELLS, MAX_LABEL, MAX_LAYER, MAX_ROBOT, MAX_TIME, MAX_TOPIC, MAX_VOCABULARY, OPERATIONS,
+                     OPERATORS, PHASES, TRAFFIC_CLASSES)
 from .range_coder import Bits, Models
 
 
@@ -223,6 +223,15 @@ def _read_map(m, payload):
     m["fused_cells"] = list(zip(field.cells, labels, robots, times, levels))
 
 
+def _read_picture(m, payload):
+    require(0 <= m["topic"] <= MAX_TOPIC and m["example"] <= 7 and m["num_parts"] <= 4, "topic, example or layers")
+    m["cell"] = tuple(m.pop("cell_" + axis) for axis in "xyz")
+    m["seen_us"] = m.pop("seen")
+    require(0 <= m["seen_us"] <= MAX_TIME, "seen")
+    require(len(payload) <= MAX_LAYER and (payload or m["num_parts"] == 1), "length of a layer")
+    m["layer"] = list(payload)
+
+
 def _read_edit(m, payload):
     require(m["operation"] < len(OPERATIONS), "operation")
     fields = {name: m.pop(name) for name in ("robot", "epoch", "topic", "other_robot", "other_epoch", "other_topic",
@@ -286,4 +295,4 @@ def _read_request(m, payload):
 
 READ = {"HEARTBEAT": _read_heartbeat, "TOPICS": _read_topics, "BRICK": _read_bricks, "CERTAINTY": _read_certainties,
         "MATCHES": _read_matches, "LABELS": _read_labels, "MAP": _read_map,
-        "EDIT": _read_edit, "REQUEST": _read_request}
+        "EDIT": _read_edit, "PICTURE": _read_picture, "REQUEST": _read_request}
