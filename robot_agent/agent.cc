@@ -88,7 +88,9 @@ Agent::Agent(const AgentOptions& options, world::ObservationSource& source, comm
         if (options.start_us > 0) sender.resumed_at_us = options.start_us;
         sender.make_heartbeat = [this](int64_t now_us) { return heartbeat(now_us); };
         return sender;
-      }()) {}
+      }()) {
+  bus_.countInto(sender_.stats());
+}
 
 void Agent::run() {
   fly();

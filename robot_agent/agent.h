@@ -29,7 +29,7 @@ struct AgentOptions {
   bool fuse = false;      ///< hold everybody's beliefs and fuse them too
   matching::MatcherOptions matcher = matching::usualMatcher();  ///< for `fuse`
   std::string out_dir;                                          ///< where robots/RNN/ goes; empty = nowhere
-  bool linger = false;  ///< stay after landing until told to stop, heard or not
+  bool linger = false;                                ///< stay after landing until told to stop, heard or not
 };
 
 /// One robot: flies its source, learns, tells the others under its budget, and listens.
