@@ -40,10 +40,9 @@ int run(fusion_node::NodeOptions options, const Link& on) {
   }
   const auto sealed_local = local ? fusion_node::authenticated(*local, key) : nullptr;
   options.authentication = sealed.get();
-  fusion_node::Node node(options, emulated ? static_cast<comms::Bus&>(*emulated) : heard,
-                         sealed_local ? static_cast<comms::Bus&>(*sealed_local)
-                         : local      ? *local
-                                      : heard);
+  comms::Bus* said_here = local ? static_cast<comms::Bus*>(local.get()) : &heard;
+  if (sealed_local) said_here = sealed_local.get();
+  fusion_node::Node node(options, emulated ? static_cast<comms::Bus&>(*emulated) : heard, *said_here);
   spdlog::info("listening on {}, link {}, mission {}, matcher {}", air.url(), on.model, options.mission,
                options.matcher.matcher);
   while (!fusion_node::stopRequested()) {

@@ -100,7 +100,7 @@ def _print_log(log, key):
     count = 0
     for _, channel, data in log:
         try:
-            line = {"channel": channel, **decode(unsealed(channel, data, key))}
+            line = {"channel": channel, **decode(unsealed(channel, data, key if parse_channel(channel) else None))}
         except BadMessage as error:
             line = {"channel": channel, "refused": error.reason, "detail": str(error)}
         print(json.dumps(line))
