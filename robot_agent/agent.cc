@@ -56,9 +56,9 @@ std::string queueKey(const mapping::PieceKey& key, int32_t part) {
 }
 
 // Bytes of a message on a channel that carry most under a thin budget: comms/budget.h.
-size_t mostBytes(const std::string& channel, int64_t budget) {
+size_t mostBytes(const std::string& channel, int64_t budget, size_t trailer) {
   const size_t best = comms::efficientDatagram(budget, kPieceOverheadBytes);
-  return std::min(wire::maxPayload(channel.size()), best - comms::wireSize(channel.size(), 0));
+  return std::min(wire::maxPayload(channel.size()), best - comms::wireSize(channel.size(), trailer));
 }
 
 void writeOut(const std::string& folder, const mapping::LocalBelief& belief, double cell_size_m,
@@ -83,8 +83,9 @@ Agent::Agent(const AgentOptions& options, world::ObservationSource& source, comm
         sender.bytes_per_s = options.budget;
         sender.stamp = [](comms::Packet& packet, int64_t now_us) { wire::stampTime(packet.bytes, {now_us}); };
         sender.join = [this](std::span<const comms::SendQueue::Next> together) { return join(together); };
-        sender.most_joined_bytes = mostBytes(
-            comms::channelName(name_, wire::channelKind(wire::MessageKind::kCertainty)), options.budget);
+        sender.most_joined_bytes =
+            mostBytes(comms::channelName(name_, wire::channelKind(wire::MessageKind::kCertainty)),
+                      options.budget, bus.trailerBytes());
         if (options.start_us > 0) sender.resumed_at_us = options.start_us;
         sender.make_heartbeat = [this](int64_t now_us) { return heartbeat(now_us); };
         return sender;
@@ -147,7 +148,7 @@ void Agent::publish() {
   if (path_.empty()) return;
   for (const mapping::Piece& whole : changes_.update(belief_)) {
     const std::string channel = comms::channelName(name_, wire::channelKind(wire::kindOf(whole)));
-    const auto parts = wire::cutToFit(whole, mostBytes(channel, options_.budget));
+    const auto parts = wire::cutToFit(whole, mostBytes(channel, options_.budget, bus_.trailerBytes()));
     for (const mapping::Piece& part : parts) {
       own_.apply(part);
       if (options_.fuse) others_.apply(part);

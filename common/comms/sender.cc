@@ -70,6 +70,7 @@ const Sender::Made* Sender::make(int64_t now_us) {
       too_many = count;
     } else {
       made_->packet = std::move(*joined);
+      made_->packet.trailer = link_.trailerBytes();
       made_->count = count;
       if (bytes * 8 > options_.most_joined_bytes * 7) break;  // full enough
     }
