@@ -7,35 +7,51 @@
 #include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
 
+#include "fusion_node/authentication.h"
 #include "fusion_node/link.h"
 #include "fusion_node/node.h"
 #include "fusion_node/process.h"
 #include "shoal/comms/channels.h"
 #include "shoal/comms/lcm_bus.h"
 #include "shoal/comms/lcm_url.h"
+#include "shoal/comms/rate_limited_bus.h"
 #include "shoal/version.h"
 
 namespace {
 
 using namespace shoal;  // NOLINT: a main file
 
-int run(const fusion_node::NodeOptions& options, const std::string& url, const std::string& link_name,
-        uint64_t seed) {
-  const comms::LinkModel model = comms::readLink(link_name);
-  comms::LcmBus air(url);
+struct Link {
+  std::string url = comms::kDefaultUrl, model = "clean", key;
+  uint64_t seed = 1;
+};
+
+int run(fusion_node::NodeOptions options, const Link& on) {
+  const comms::LinkModel model = comms::readLink(on.model);
+  const auto key = fusion_node::readKey(on.key);
+  comms::LcmBus air(on.url);
+  const auto sealed = fusion_node::authenticated(air, key);
+  comms::RateLimitedBus heard(sealed ? static_cast<comms::Bus&>(*sealed) : air);
   const auto emulated =
-      fusion_node::emulated(air, model, {options.name, options.mission, seed, options.rate});
+      fusion_node::emulated(heard, model, {options.name, options.mission, on.seed, options.rate});
   std::unique_ptr<comms::LcmBus> local;
-  if (comms::localUrl(url) != comms::composeUrl(comms::parseUrl(url))) {
-    local = std::make_unique<comms::LcmBus>(comms::localUrl(url));
+  if (comms::localUrl(on.url) != comms::composeUrl(comms::parseUrl(on.url))) {
+    local = std::make_unique<comms::LcmBus>(comms::localUrl(on.url));
   }
-  comms::Bus& link = emulated ? static_cast<comms::Bus&>(*emulated) : air;
-  fusion_node::Node node(options, link, local ? *local : air);
-  spdlog::info("listening on {}, link {}, mission {}, matcher {}", air.url(), link_name, options.mission,
+  const auto sealed_local = local ? fusion_node::authenticated(*local, key) : nullptr;
+  options.authentication = sealed.get();
+  comms::Bus* said_here = local ? static_cast<comms::Bus*>(local.get()) : &heard;
+  if (sealed_local) said_here = sealed_local.get();
+  fusion_node::Node node(options, emulated ? static_cast<comms::Bus&>(*emulated) : heard, *said_here);
+  spdlog::info("listening on {}, link {}, mission {}, matcher {}", air.url(), on.model, options.mission,
                options.matcher.matcher);
-  while (!fusion_node::stopRequested()) node.turn(20);
+  while (!fusion_node::stopRequested()) {
+    node.turn(20);
+    if (local) local->receive(0, [](const comms::Packet&) {});  // only spoken to: else its queue would grow
+  }
   node.finish();
   fusion_node::logLink(emulated.get());
+  fusion_node::logAuthentication(sealed.get());
   return 0;
 }
 
@@ -43,24 +59,26 @@ int run(const fusion_node::NodeOptions& options, const std::string& url, const s
 
 int main(int argc, char** argv) {
   fusion_node::NodeOptions options;
-  std::string url = comms::kDefaultUrl, rate = "1", mission = "shoal", log_level = "info", sigma = "auto",
-              link = "clean";
-  uint64_t seed = 1;
+  Link link;
+  std::string rate = "1", mission = "shoal", log_level = "info", sigma = "auto";
   CLI::App app{"Hears a team of robots, matches their labels and republishes one consistent map.",
                "fusion_node"};
   app.set_version_flag("--version", std::string("fusion_node ") + version() + " (" + commit() + ")");
   app.set_config("--config", "", "mission.toml: any of these flags");
   app.allow_config_extras(CLI::config_extras_mode::ignore_all);  // the file serves other programs too
   app.add_option("--node", options.name, "name of this node, capitals and digits")->capture_default_str();
-  app.add_option("--lcm-url", url, "multicast group of the link")
+  app.add_option("--lcm-url", link.url, "multicast group of the link")
       ->envname("SHOAL_LCM_URL")
       ->capture_default_str();
   app.add_option("--budget", options.budget, "bytes per second of mission time on the link, 0 = unlimited")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  app.add_option("--link", link, "emulated on the receiving side: clean, mesh, acoustic, satellite or a file")
+  app.add_option("--key", link.key, "file with the team's key: only who has it is listened to");
+  app.add_option("--link", link.model,
+                 "emulated on the receiving side: clean, mesh, acoustic, satellite or a file")
       ->capture_default_str();
-  app.add_option("--seed", seed, "mission seed: decides what the emulated link loses")->capture_default_str();
+  app.add_option("--seed", link.seed, "mission seed: decides what the emulated link loses")
+      ->capture_default_str();
   app.add_option("--matcher", options.matcher.matcher,
                  "id, hungarian, incremental, components, clear or shoal")
       ->capture_default_str();
@@ -94,7 +112,7 @@ int main(int argc, char** argv) {
     if (similarity->count() == 0)
       options.matcher.similarity = matching::usualSimilarity(options.matcher.matcher);
     comms::channelName(options.name, "HEARTBEAT");  // a bad node name is a bad flag
-    return run(options, url, link, seed);
+    return run(options, link);
   } catch (const std::invalid_argument& error) {
     std::fprintf(stderr, "fusion_node: %s\n", error.what());
     return 2;

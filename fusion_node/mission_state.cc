@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "fusion_node/authentication.h"
 #include "shoal/comms/channels.h"
 #include "shoal/wire/message_kind.h"
 #include "shoal/wire/piece_codec.h"
@@ -74,6 +75,12 @@ bool MissionState::hear(const comms::Packet& packet, comms::Stats& stats) {
   const auto header = wire::peek(packet.bytes);
   if (!header) return refuse(wire::name(header.error()));
   if (wire::channelKind(header->kind) != channel->kind) return refuse("wrong type");
+  if (isSealed(packet)) {  // what a key let pass has no seal any more
+    if (sealed_nodes_.size() < kMaxNodes || sealed_nodes_.contains(channel->node)) {
+      ++sealed_nodes_[channel->node];
+    }
+    return refuse("sealed");
+  }
   if (header->mission != mission_) {
     if (other_missions_.size() < kMaxOtherMissions) other_missions_.insert(header->mission);
     return refuse("other mission");
@@ -179,6 +186,7 @@ mapping::MissionView MissionState::view() const {
   for (const auto& [name, h] : heartbeats_) {
     view.nodes.push_back(statusOf(name, h, holdsWhole(name), {fused_.stateDigest(), mapDigest()}));
   }
+  for (const auto& [name, messages] : sealed_nodes_) view.strangers.push_back({name, "a key", messages});
   std::ranges::stable_sort(view.nodes, {}, [](const mapping::NodeStatus& n) {
     const auto robot = world::parseRobotId(n.name);
     return std::pair(robot ? number(*robot) : INT32_MAX, n.name);

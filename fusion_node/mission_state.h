@@ -54,6 +54,8 @@ class MissionState {
   const std::set<int32_t>& otherMissions() const { return other_missions_; }
   /// Pieces of equal version and other content: two processes with one robot id.
   int32_t conflicts() const { return conflicts_; }
+  /// Who speaks with a key, which we do not have: messages by the names of their channels.
+  const std::map<std::string, uint64_t>& sealedNodes() const { return sealed_nodes_; }
   /// Latest mission time in any heartbeat.
   world::Timestamp latestTime() const { return latest_; }
 
@@ -91,6 +93,7 @@ class MissionState {
   mapping::BeliefStore beliefs_;
   std::map<std::string, wire::Heartbeat> heartbeats_;
   std::set<int32_t> other_missions_;
+  std::map<std::string, uint64_t> sealed_nodes_;
   int32_t conflicts_ = 0;
   world::Timestamp latest_;
   mapping::FusedMap fused_;

@@ -10,6 +10,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include "fusion_node/authentication.h"
 #include "fusion_node/picture_files.h"
 #include "fusion_node/process.h"
 #include "shoal/comms/channels.h"
@@ -58,6 +59,7 @@ Node::Node(const NodeOptions& options, comms::Bus& link, comms::Bus& local)
       sender_(link, &local,
               senderOptions(options.budget, [this](int64_t now_us) { return heartbeat(now_us); })),
       repair_({options.name, options.mission, options.budget, {}, true, {}}, state_, sender_) {
+  link.countInto(sender_.stats());
   if (!options.state_dir.empty()) {
     recall();
     loadEdits();
@@ -73,6 +75,7 @@ int64_t Node::wallMs() const {
 
 void Node::turn(int timeout_ms) {
   link_.receive(timeout_ms, [this](const comms::Packet& packet) { hear(packet); });
+  warnOfStrangers();
   if (options_.rate == 0) clock_.advanceTo(state_.latestTime().us);
 
   const int64_t wall = wallMs();
@@ -215,9 +218,28 @@ Json Node::answerEdit(const Json& question) {
 Json Node::answer(const Json& question) {
   if (mapping::isEdit(question)) return answerEdit(question);
   state_.refreshMap();
-  const mapping::MissionView view = state_.view();
+  const mapping::MissionView known = view();
   const auto beliefs = [this]() -> const mapping::BeliefStore& { return state_.beliefs(); };
-  return mapping::answer({view, beliefs, state_.matcher()}, question);
+  return mapping::answer({known, beliefs, state_.matcher()}, question);
+}
+
+mapping::MissionView Node::view() const {
+  mapping::MissionView view = state_.view();
+  if (options_.authentication != nullptr) view.strangers = strangersOf(*options_.authentication);
+  return view;
+}
+
+void Node::warnOfStrangers() {
+  const bool has_key = options_.authentication != nullptr;
+  const size_t heard = has_key ? options_.authentication->strangers().size() : state_.sealedNodes().size();
+  if (heard == warned_of_strangers_) return;
+  warned_of_strangers_ = heard;
+  if (has_key) {
+    for (const mapping::StrangerStatus& s : strangersOf(*options_.authentication))
+      spdlog::warn("{} is a stranger here: it has {}", s.name, s.has);
+  } else {
+    spdlog::warn("{} nodes speak with a key that this one lacks: --key FILE", heard);
+  }
 }
 
 void Node::finish() {

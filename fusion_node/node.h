@@ -10,6 +10,7 @@
 #include "fusion_node/node_memory.h"
 #include "fusion_node/query_server.h"
 #include "fusion_node/repair.h"
+#include "shoal/comms/authenticated_bus.h"
 #include "shoal/comms/bus.h"
 #include "shoal/comms/mission_clock.h"
 #include "shoal/comms/sender.h"
@@ -25,6 +26,7 @@ struct NodeOptions {
   matching::MatcherOptions matcher = matching::usualMatcher();
   std::string state_dir;  ///< where questions are answered; empty = nowhere
   std::string out_dir;    ///< where the map's files go at the end; empty = nowhere
+  const comms::AuthenticatedBus* authentication = nullptr;  ///< what the link is heard through, with a key
 };
 
 /// A fusion node: hears everybody, fuses when something changed, tells the link what matches what and the
@@ -51,6 +53,8 @@ class Node {
   void hear(const comms::Packet& packet);
   void recall();
   void publishMap();
+  mapping::MissionView view() const;
+  void warnOfStrangers();
   nlohmann::ordered_json answer(const nlohmann::ordered_json& question);
   nlohmann::ordered_json answerEdit(const nlohmann::ordered_json& question);
   void loadEdits();
@@ -67,6 +71,7 @@ class Node {
   std::optional<NodeMemory> memory_;
   std::optional<QueryServer> queries_;
   std::map<std::string, size_t> num_chunks_;  // in the send queue, by channel
+  size_t warned_of_strangers_ = 0;
   uint64_t published_digest_ = 0;
   int64_t fused_at_ms_ = 0, published_at_ms_ = 0;
 };

@@ -27,6 +27,7 @@ void addWhere(CLI::App& command, Asking& asking) {
       .add_option("--sigma", asking.sigma,
                   "for --log: least similarity of a match: auto or a number in (0, 1]")
       ->capture_default_str();
+  command.add_option("--key", asking.where.key, "for --log: the team's key file, to check the seals");
   command.add_flag("--json", asking.json, "answer in JSON");
 }
 

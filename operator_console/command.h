@@ -32,6 +32,8 @@ void addNodeCommand(CLI::App& app, Action& chosen);
 void addEditCommands(CLI::App& app, Action& chosen);
 /// completion SHELL: a script that completes commands and flags.
 void addCompletionCommand(CLI::App& app, Action& chosen);
+/// keygen FILE: a key for a team.
+void addKeygenCommand(CLI::App& app, Action& chosen);
 void addEvaluateCommand(CLI::App& app, Action& chosen);
 /// summary: a finished mission as one page.
 void addSummaryCommand(CLI::App& app, Action& chosen);

@@ -48,8 +48,8 @@ int diff(const DiffQuestion& q) {
                                 q.after);
   }
   const Where where = whereOf(q.asking);
-  const auto viewAt = [log = recordingOf(where), matcher = matcherOf(where)](double time_s) {
-    return readRecording(log, matcher, {}, world::Timestamp{std::llround(time_s * 1e6)}).state.view();
+  const auto viewAt = [log = recordingOf(where), matcher = matcherOf(where), key = where.key](double time_s) {
+    return readRecording(log, matcher, {}, world::Timestamp{std::llround(time_s * 1e6)}, key).state.view();
   };
   const Json d = mapping::diffAnswer(viewAt(before_s), before_s, viewAt(after_s), after_s);
   if (q.asking.json) {

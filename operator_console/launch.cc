@@ -17,6 +17,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include "fusion_node/authentication.h"
 #include "operator_console/finish_run.h"
 #include "operator_console/kill_plan.h"
 #include "operator_console/log_check.h"
@@ -100,7 +101,9 @@ class Mission {
   Mission(const LaunchOptions& options, std::vector<KillStep> plan)
       : options_(options),
         plan_(std::move(plan)),
-        bus_(options.lcm_url),
+        air_(options.lcm_url),
+        sealed_(fusion_node::authenticated(air_, fusion_node::readKey(options.key))),
+        bus_(sealed_ ? static_cast<comms::Bus&>(*sealed_) : air_),
         watch_(options.mission, options.num_robots, options.budget),
         started_(Clock::now()) {}
 
@@ -133,7 +136,9 @@ class Mission {
   std::set<std::string> crashing_;        // killed by the plan, not gone yet
   std::set<std::string> restarted_;       // by plan or after a crash
   std::map<std::string, int> crashes_;    // unplanned
-  comms::LcmBus bus_;
+  comms::LcmBus air_;
+  std::unique_ptr<comms::AuthenticatedBus> sealed_;  // with a key
+  comms::Bus& bus_;
   MissionWatch watch_;
   Supervisor children_;
   TerminalBlock block_;
@@ -329,8 +334,8 @@ std::vector<std::string> Mission::settleRecording() {
   const auto deadline = Clock::now() + std::chrono::duration<double>(options_.settle_timeout_s);
   while (true) {
     turnUntil(kLoggerFlush, [] { return false; });
-    const auto lacking =
-        lackingInLog(recordingPath(options_), options_.mission, watch_.stateDigest(), watch_.nodes());
+    const auto lacking = lackingInLog(recordingPath(options_), options_.mission, watch_.stateDigest(),
+                                      watch_.nodes(), options_.key);
     if (lacking.empty() || Clock::now() >= deadline) return lacking;
     askForRecording();
     turnUntil(kLogCheck, [] { return false; });

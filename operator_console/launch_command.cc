@@ -37,6 +37,8 @@ void addLaunchCommand(CLI::App& app, Action& chosen) {
       ->add_option("--link", o.link,
                    "what every process hears through: clean, mesh, acoustic, satellite or a file")
       ->capture_default_str();
+  command->add_option("--key", o.key,
+                      "file with the team's key, made by keygen: only who has it is listened to");
   command->add_option("--rate", o.rate, "mission seconds per wall second: 1, 10, or max")
       ->capture_default_str();
   command

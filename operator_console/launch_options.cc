@@ -7,6 +7,7 @@
 #include "fusion_node/process.h"
 #include "shoal/comms/lcm_url.h"
 #include "shoal/comms/link_model.h"
+#include "shoal/comms/seal.h"
 
 namespace shoal::console {
 namespace {
@@ -35,6 +36,7 @@ void check(const LaunchOptions& options) {
                                 std::to_string(options.budget));
   }
   comms::readLink(options.link);
+  if (!options.key.empty()) comms::SealKey::read(options.key);
   if (options.profile != "best" && options.profile != "paper") {
     throw std::invalid_argument("--profile must be best or paper, got \"" + options.profile + "\"");
   }

@@ -18,6 +18,7 @@ struct LaunchOptions {
   uint64_t seed = 1;
   int64_t budget = 2000;       ///< bytes per second of mission time, each; 0 = unlimited
   std::string link = "clean";  ///< clean, mesh, acoustic, satellite or a file: docs/link.md
+  std::string key;             ///< file with the team's key; empty = messages carry no seal
   std::string rate = "max";    ///< mission seconds per wall second, or "max"
   std::string profile = "best";
   matching::MatcherOptions matcher = matching::usualMatcher();

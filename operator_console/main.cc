@@ -43,6 +43,7 @@ int main(int argc, char** argv) {
   console::addEditCommands(app, chosen);
   console::addSpyCommand(app, chosen);
   console::addDoctorCommand(app, chosen);
+  console::addKeygenCommand(app, chosen);
   console::addCompletionCommand(app, chosen);
   console::addUnbuiltCommands(app, chosen);
   try {

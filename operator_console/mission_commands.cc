@@ -52,9 +52,12 @@ std::vector<std::string> flightArguments(const LaunchOptions& options) {
 }
 
 std::vector<std::string> linkArguments(const LaunchOptions& options) {
-  return {"--lcm-url", options.lcm_url, "--budget",  std::to_string(options.budget),
-          "--rate",    options.rate,    "--mission", std::to_string(options.mission),
-          "--link",    options.link};
+  std::vector<std::string> arguments = {
+      "--lcm-url", options.lcm_url, "--budget",  std::to_string(options.budget),
+      "--rate",    options.rate,    "--mission", std::to_string(options.mission),
+      "--link",    options.link};
+  if (!options.key.empty()) append(arguments, {"--key", options.key});
+  return arguments;
 }
 
 }  // namespace

@@ -154,7 +154,7 @@ Json askRun(const Where& where, const Json& question) {
 
 // A recording, and what was decided since.
 RecordedMission recordingWithEdits(const Where& where) {
-  RecordedMission recorded = readRecording(where.log, where.matcher);
+  RecordedMission recorded = readRecording(where.log, where.matcher, {}, {}, where.key);
   for (const mapping::Edit& edit : mapping::readEdits(editsPathOf(where), recorded.mission)) {
     recorded.state.apply(mapping::pieceOf(edit));
   }

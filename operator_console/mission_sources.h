@@ -14,6 +14,7 @@ namespace shoal::console {
 /// given.
 struct Where {
   std::string node, run, log;
+  std::string key = {};  ///< file with which a recording's seals are checked; empty: they are not
   matching::MatcherOptions matcher = matching::usualMatcher();  ///< with which a recording is fused
 };
 

@@ -3,18 +3,17 @@
 
 #include <stdexcept>
 
-#include "shoal/comms/log_reader.h"
-
 namespace shoal::console {
 namespace {
 
-int32_t missionOf(const std::string& path) {
-  comms::LogReader log(path);
+int32_t missionOf(const std::string& path, const std::string& key_file) {
+  MessageLog log(path, key_file);
   while (const auto event = log.next()) {
     const auto header = wire::peek(event->packet.bytes);
     if (header && header->kind == wire::MessageKind::kHeartbeat) return header->mission;
   }
-  throw std::runtime_error(path + " holds no heartbeat of a mission; is it an LCM log?");
+  throw std::runtime_error(path + " holds no heartbeat of a mission" +
+                           (log.seals().refused > 0 ? " that this key sealed" : "; is it an LCM log?"));
 }
 
 int64_t total(const comms::Stats& stats) {
@@ -26,11 +25,12 @@ int64_t total(const comms::Stats& stats) {
 }  // namespace
 
 RecordedMission readRecording(const std::string& path, const matching::MatcherOptions& matcher,
-                              const OnMessage& on_message, std::optional<world::Timestamp> until) {
-  const int32_t mission = missionOf(path);
+                              const OnMessage& on_message, std::optional<world::Timestamp> until,
+                              const std::string& key_file) {
+  const int32_t mission = missionOf(path, key_file);
   RecordedMission recorded{mission, {mission, matcher}, 0, 0};
   comms::Stats refused;
-  comms::LogReader log(path);
+  MessageLog log(path, key_file);
   while (const auto event = log.next()) {
     if (!event->packet.channel.starts_with("SHOAL_")) continue;  // cameras, LCM's own self test
     const auto header = wire::peek(event->packet.bytes);
@@ -44,7 +44,8 @@ RecordedMission readRecording(const std::string& path, const matching::MatcherOp
     if (!on_message) continue;
     on_message(*comms::parseChannel(event->packet.channel), *header, event->packet, recorded.state);
   }
-  recorded.refused += static_cast<int64_t>(log.counts().damaged + log.counts().large);
+  recorded.seals = log.seals();
+  recorded.refused += static_cast<int64_t>(log.counts().damaged + log.counts().large) + log.seals().refused;
   recorded.state.refreshMap();
   return recorded;
 }

@@ -62,13 +62,14 @@ mapping::LocalBelief heardMap(const mapping::BeliefStore& beliefs, world::RobotI
   return belief;
 }
 
-Replay replay(const std::string& log, const std::string& out, const matching::MatcherOptions& matcher) {
+Replay replay(const std::string& log, const std::string& out, const matching::MatcherOptions& matcher,
+              const std::string& key_file) {
   if (std::filesystem::exists(out + "/summary.json")) {
     throw std::invalid_argument("--out " + out + " holds a finished mission; name another folder");
   }
-  Replay replay{log, out, readRecording(log, matcher), {}, {}};
+  Replay replay{log, out, readRecording(log, matcher, {}, {}, key_file), {}, {}};
   const fusion_node::MissionState& state = replay.recorded.state;
-  replay.lacking = lackingPieces(log, replay.recorded.mission, state.beliefs(), state.heartbeats());
+  replay.lacking = lackingPieces(log, replay.recorded.mission, state.beliefs(), state.heartbeats(), key_file);
   for (const world::RobotId robot : robotsOf(state)) {
     if (!state.heartbeats().contains(world::name(robot))) {
       replay.lacking.push_back(world::name(robot) + ": its heartbeats, which say whether this is all");
@@ -110,6 +111,7 @@ Json Replay::json() const {
           {"mission_id", recorded.mission},
           {"messages", recorded.messages},
           {"refused", recorded.refused},
+          {"seals", recorded.seals.json()},
           {"cells", state.map().cells.size()},
           {"labels", state.map().labels.size()},
           {"digest",
@@ -126,6 +128,7 @@ std::string Replay::text() const {
       fmt::format("mission {}: {} messages ({} refused), {} robots, {} cells, {} labels, in {}\n",
                   recorded.mission, recorded.messages, recorded.refused, robotsOf(state).size(),
                   state.map().cells.size(), state.map().labels.size(), out);
+  text += recorded.seals.text();
   if (isWhole()) return text + "the recording holds all that the robots said they had\n";
   text += "the recording lacks\n";
   for (const std::string& line : lacking) text += "  " + line + "\n";

@@ -33,8 +33,10 @@ struct Replay {
 /// of the mission, and so are the maps of robots but for their certainties. What does not travel is not
 /// there: exact counts (topics.json), paths (poses.txt), the truth and the scores. Whatever lacks, what there
 /// is is written.
+/// @param key_file  as MessageLog().
 /// @throws std::runtime_error when the recording cannot be read or a file not written; std::invalid_argument
 ///         when `out` holds a finished mission.
-Replay replay(const std::string& log, const std::string& out, const matching::MatcherOptions& matcher);
+Replay replay(const std::string& log, const std::string& out, const matching::MatcherOptions& matcher,
+              const std::string& key_file = {});
 
 }  // namespace shoal::console

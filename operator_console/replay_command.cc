@@ -12,7 +12,7 @@ namespace shoal::console {
 namespace {
 
 struct Flags {
-  std::string log, out, sigma = "auto", similarity;
+  std::string log, out, key, sigma = "auto", similarity;
   matching::MatcherOptions matcher = matching::usualMatcher();
   bool json = false;
 };
@@ -21,7 +21,7 @@ int run(Flags flags) {
   flags.matcher.sigma = matching::parseSigma(flags.sigma);
   flags.matcher.similarity =
       flags.similarity.empty() ? matching::usualSimilarity(flags.matcher.matcher) : flags.similarity;
-  const Replay result = replay(flags.log, flags.out, flags.matcher);
+  const Replay result = replay(flags.log, flags.out, flags.matcher, flags.key);
   std::cout << (flags.json ? result.json().dump(2) + "\n" : result.text());
   return result.isWhole() ? 0 : 1;
 }
@@ -43,6 +43,7 @@ void addReplayCommand(CLI::App& app, Action& chosen) {
       ->add_option("--sigma", flags->sigma,
                    "least similarity of a match: auto (the matcher's usual) or a number in (0, 1]")
       ->capture_default_str();
+  command->add_option("--key", flags->key, "the team's key file, to check the seals");
   command->add_flag("--json", flags->json, "answer in JSON");
   command->callback([&chosen, flags] { chosen = [flags] { return run(*flags); }; });
 }

@@ -7,6 +7,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include "fusion_node/authentication.h"
 #include "operator_console/terminal.h"
 #include "shoal/comms/channels.h"
 #include "shoal/wire/heartbeat_codec.h"
@@ -43,7 +44,9 @@ void shorten(Json& json) {
 
 bool Spy::isShown(const std::string& channel) const { return !shown_ || std::regex_match(channel, *shown_); }
 
-void Spy::hear(const comms::Packet& packet, double at_s) {
+void Spy::hear(const comms::Packet& heard, double at_s) {
+  comms::Packet packet = heard;
+  if (fusion_node::isSealed(packet)) comms::removeSeal(packet);  // unseen: who spies looks at all there is
   ++messages_;
   if (!first_s_) first_s_ = at_s;
   const bool is_sound = hearNode(packet);

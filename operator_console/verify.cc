@@ -116,6 +116,7 @@ Json Verification::json() const {
           {"mission_id", recorded.mission},
           {"messages", recorded.messages},
           {"refused", recorded.refused},
+          {"seals", recorded.seals.json()},
           {"budget_kept", budgetKept()},
           {"nodes", nodes},
           {"bytes_not_recorded", lost},
@@ -148,11 +149,12 @@ std::string Verification::text() const {
     text += "agreement: NONE\n";
   }
   text += fmt::format("digests: {}\n", disagreements.empty() ? "equal" : "NOT equal");
+  text += recorded.seals.text();
   for (const std::string& line : wrong()) text += "wrong: " + line + "\n";
   return text;
 }
 
-Verification verify(const std::string& log) {
+Verification verify(const std::string& log, const std::string& key_file) {
   TrafficAudit traffic;
   Agreement agreement;
   const auto hear = [&](const comms::ChannelName& channel, const wire::Header& header,
@@ -165,10 +167,10 @@ Verification verify(const std::string& log) {
     traffic.hear(channel.node, header, packet, heartbeat ? &*heartbeat : nullptr);
     agreement.update(state.heartbeats());
   };
-  Verification result{log, readRecording(log, {}, hear), {}, {}, {}, {}, {}, {}};
+  Verification result{log, readRecording(log, {}, hear, {}, key_file), {}, {}, {}, {}, {}, {}};
   const fusion_node::MissionState& state = result.recorded.state;
   result.traffic = traffic.traffic();
-  result.lacking = lackingPieces(log, result.recorded.mission, state.beliefs(), state.heartbeats());
+  result.lacking = lackingPieces(log, result.recorded.mission, state.beliefs(), state.heartbeats(), key_file);
   result.landed_s = agreement.landedAt();
   result.agreed_s = agreement.agreedAt();
   result.disagreements = disagreements(state.heartbeats());

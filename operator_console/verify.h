@@ -35,6 +35,7 @@ struct Verification {
 /// Budgets, and what was sent, are what the heartbeats say; a node that hides its sending cannot be told from
 /// one whose messages were lost.
 /// @throws std::runtime_error when the recording cannot be read or holds no heartbeat.
-Verification verify(const std::string& log);
+/// @param key_file  as MessageLog().
+Verification verify(const std::string& log, const std::string& key_file = {});
 
 }  // namespace shoal::console

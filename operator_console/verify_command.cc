@@ -11,17 +11,18 @@ namespace shoal::console {
 
 void addVerifyCommand(CLI::App& app, Action& chosen) {
   struct Flags {
-    std::string log;
+    std::string log, key;
     bool json = false;
   };
   CLI::App* command =
       app.add_subcommand("verify", "prove from a recording: budget kept, gaps repaired, all nodes agree");
   const auto flags = std::make_shared<Flags>();
   command->add_option("log", flags->log, "a recording made by lcm-logger")->required();
+  command->add_option("--key", flags->key, "the team's key file, to check the seals");
   command->add_flag("--json", flags->json, "answer in JSON");
   command->callback([&chosen, flags] {
     chosen = [flags] {
-      const Verification result = verify(flags->log);
+      const Verification result = verify(flags->log, flags->key);
       std::cout << (flags->json ? result.json().dump(2) + "\n" : result.text());
       return result.wrong().empty() ? 0 : 1;
     };

@@ -64,10 +64,10 @@ std::string queueKey(const mapping::PieceKey& key, int32_t part) {
 }
 
 // Bytes of a message on a channel that carry most under a thin budget: comms/budget.h.
-size_t mostBytes(const std::string& channel, int64_t budget) {
+size_t mostBytes(const std::string& channel, int64_t budget, size_t trailer) {
   const size_t best = comms::efficientDatagram(budget, kPieceOverheadBytes);
   const size_t most = std::min(wire::maxPayload(channel.size()), wire::kMaxRepairableBytes);
-  return std::min(most, best - comms::wireSize(channel.size(), 0));
+  return std::min(most, best - comms::wireSize(channel.size(), trailer));
 }
 
 int64_t wallUs() {
@@ -101,8 +101,9 @@ Agent::Agent(const AgentOptions& options, world::ObservationSource& source, comm
                   wire::stampTime(packet.bytes, {now_us});
                 };
                 sender.join = [this](std::span<const comms::SendQueue::Next> together) { return join(together); };
-                sender.most_joined_bytes = mostBytes(
-                    comms::channelName(name_, wire::channelKind(wire::MessageKind::kCertainty)), options.budget);
+                sender.most_joined_bytes =
+                    mostBytes(comms::channelName(name_, wire::channelKind(wire::MessageKind::kCertainty)),
+                              options.budget, bus.trailerBytes());
                 if (options.start_us > 0) sender.resumed_at_us = options.start_us;
                 sender.make_heartbeat = [this](int64_t now_us) { return heartbeat(now_us); };
                 return sender;
@@ -113,6 +114,7 @@ Agent::Agent(const AgentOptions& options, world::ObservationSource& source, comm
                         sender_.queue().isWaiting(queueKey(piece.key, piece.part));
                }},
               others_, sender_) {
+  bus_.countInto(sender_.stats());
   if (options.resume) resume();
 }
 
@@ -192,7 +194,7 @@ void Agent::publish() {
   if (path_.empty()) return;
   for (const mapping::Piece& whole : changes_.update(belief_)) {
     const std::string channel = comms::channelName(name_, wire::channelKind(wire::kindOf(whole)));
-    const auto parts = wire::cutToFit(whole, mostBytes(channel, options_.budget));
+    const auto parts = wire::cutToFit(whole, mostBytes(channel, options_.budget, bus_.trailerBytes()));
     for (const mapping::Piece& part : parts) say(part);
     int32_t& offered = num_parts_[whole.key];
     for (auto stale = static_cast<int32_t>(parts.size()); stale < offered; ++stale) {

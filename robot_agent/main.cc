@@ -14,6 +14,7 @@
 #include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
 
+#include "fusion_node/authentication.h"
 #include "fusion_node/link.h"
 #include "fusion_node/process.h"
 #include "robot_agent/agent.h"
@@ -21,6 +22,7 @@
 #include "shoal/comms/camera_channels.h"
 #include "shoal/comms/lcm_bus.h"
 #include "shoal/comms/lcm_url.h"
+#include "shoal/comms/rate_limited_bus.h"
 #include "shoal/mapping/atomic_file.h"
 #include "shoal/version.h"
 #include "shoal/world/place.h"
@@ -32,7 +34,7 @@ using namespace shoal;  // NOLINT: a main file
 struct Flags {
   std::string robot = "R00", source, url = comms::kDefaultUrl, rate = "1", mission = "shoal",
               log_level = "info";
-  std::string sigma = "auto", link = "clean", checkpoint, camera, source_url;
+  std::string sigma = "auto", link = "clean", checkpoint, camera, source_url, key;
   double source_timeout_s = 0, start_s = 0;
   int64_t source_start_us = -1;
   bool period_given = false;
@@ -169,13 +171,17 @@ int run(Flags flags) {
     sayTroubles(source);
     return 0;
   }
+  const auto key = fusion_node::readKey(flags.key);
   comms::LcmBus air(flags.url);
-  const auto link =
-      fusion_node::emulated(air, model, {flags.robot, options.mission, options.explorer.seed, options.rate});
+  const auto sealed = fusion_node::authenticated(air, key);
+  comms::RateLimitedBus heard(sealed ? static_cast<comms::Bus&>(*sealed) : air);
+  const auto link = fusion_node::emulated(
+      heard, model, {flags.robot, options.mission, options.explorer.seed, options.rate});
   spdlog::info("{} flies {}, mission {}, on {}, link {}", flags.robot, from.what, options.mission, air.url(),
                flags.link);
-  robot_agent::Agent(options, source, link ? static_cast<comms::Bus&>(*link) : air).run();
+  robot_agent::Agent(options, source, link ? static_cast<comms::Bus&>(*link) : heard).run();
   fusion_node::logLink(link.get());
+  fusion_node::logAuthentication(sealed.get());
   sayTroubles(source);
   return 0;
 }
@@ -211,6 +217,7 @@ int main(int argc, char** argv) {
   app.add_option("--link", f.link,
                  "emulated on the receiving side: clean, mesh, acoustic, satellite or a file")
       ->capture_default_str();
+  app.add_option("--key", f.key, "file with the team's key: only who has it is listened to");
   app.add_option("--profile", f.agent.explorer.profile, "words and hyper-parameters: best or paper")
       ->capture_default_str();
   app.add_option("--mission", f.mission, "number or name that all processes of a mission share")

@@ -9,10 +9,12 @@
 #include <cstdint>
 #include <deque>
 #include <lcm/lcm-cpp.hpp>
+#include <memory>
 #include <stdexcept>
 #include <utility>
 
 #include "shoal/comms/channels.h"
+#include "shoal/comms/datagram_receiver.h"
 #include "shoal/comms/lcm_url.h"
 #include "shoal/demand.h"
 
@@ -34,6 +36,8 @@ struct LcmBus::Impl {
 
   void onMessage(const lcm::ReceiveBuffer& buffer, const std::string& channel) noexcept;
 
+  bool hearsOurs() const { return options.channels.empty() && !options.everything; }
+
   bool isKnown(const std::string& channel) const {
     if (options.everything) return channel != "LCM_SELF_TEST";
     return options.channels.empty() ? parseChannel(channel).has_value()
@@ -45,8 +49,25 @@ struct LcmBus::Impl {
   std::deque<Packet> queue;
   LcmBusCounts counts;
   lcm::LCM transport;
+  std::unique_ptr<DatagramReceiver> ours;  // of our channels; LCM itself hears those of others
   int fd = -1;
+
+  void drain();
 };
+
+// Takes what has arrived into the queue. Bounded, so that a flood faster than this cannot hold it.
+void LcmBus::Impl::drain() {
+  if (ours == nullptr) {
+    for (size_t i = 0; i < 2 * options.max_queue && transport.handleTimeout(0) > 0; ++i) {
+    }
+    return;
+  }
+  for (Packet& packet : ours->take()) queue.push_back(std::move(packet));
+  const DatagramCounts of_ours = ours->counts();
+  counts.dropped = of_ours.dropped;
+  counts.bad_channel = of_ours.bad_channel;
+  counts.bad_size = of_ours.bad_size;
+}
 
 // Called from inside LCM, which an exception would leave locked. A datagram without a channel's NUL arrives
 // with a data_size near 2^32: nothing is read before the sizes are known to be sound.
@@ -90,6 +111,15 @@ LcmBus::LcmBus(const std::string& url, const LcmBusOptions& options) {
                              "; without a multicast route, run: sudo ip route add 224.0.0.0/4 dev lo");
   };
   if (!impl_->transport.good()) fail("the socket cannot be set up");
+  if (impl_->hearsOurs()) {
+    try {
+      impl_->ours = std::make_unique<DatagramReceiver>(parseUrl(impl_->url), options.max_queue);
+    } catch (const std::runtime_error& error) {
+      fail(error.what());
+    }
+    impl_->fd = impl_->ours->fileDescriptor();
+    return;
+  }
   // A function, for g++ 12 miscompiles LCM's way of calling a member under -fsanitize=vptr.
   using Handler = void (*)(const lcm::ReceiveBuffer*, const std::string&, Impl*);
   const Handler handler = [](const lcm::ReceiveBuffer* buffer, const std::string& channel, Impl* impl) {
@@ -101,11 +131,7 @@ LcmBus::LcmBus(const std::string& url, const LcmBusOptions& options) {
     subscription->setQueueCapacity(capacity);
   };
   const int most = static_cast<int>(std::min<size_t>(options.max_queue, INT32_MAX));
-  if (options.everything) {
-    subscribe(".*", most);
-  } else if (options.channels.empty()) {
-    subscribe(kAllChannels, 0);  // unlimited: the bound is ours, with a counter
-  }
+  if (options.everything) subscribe(".*", most);
   for (const std::string& channel : options.channels) subscribe(channel, most);
   impl_->fd = impl_->transport.getFileno();  // starts the receiving thread, with LCM's self test
   if (impl_->fd < 0) fail("the receiving thread did not start");
@@ -126,10 +152,7 @@ int LcmBus::receive(int timeout_ms, const std::function<void(const Packet&)>& ha
   while (true) {
     pollfd readable{impl_->fd, POLLIN, 0};
     if (poll(&readable, 1, queue.empty() ? millisecondsUntil(deadline) : 0) <= 0) break;
-    // Bounded, so that a flood faster than this loop cannot hold it.
-    const size_t most = 2 * impl_->options.max_queue;
-    for (size_t i = 0; i < most && impl_->transport.handleTimeout(0) > 0; ++i) {
-    }
+    impl_->drain();
     if (!queue.empty() || Clock::now() >= deadline) break;  // else all of it was refused
   }
   int delivered = 0;

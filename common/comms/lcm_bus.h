@@ -32,9 +32,10 @@ struct LcmBusCounts {
   uint64_t bad_size = 0;     ///< Above max_message_bytes.
 };
 
-/// A multicast group through LCM, which runs a receiving thread of its own. Handlers run in the thread that
-/// calls receive(), outside of LCM, so that they may throw and publish. Only packets on channels of ours (or
-/// those of the options) and of legal size are delivered; their bytes are not looked at.
+/// A multicast group as LCM speaks it. Our own channels are heard by DatagramReceiver, those of others by
+/// LCM, which can be crashed by crafted fragments; either has a receiving thread of its own. Handlers run in
+/// the thread that calls receive(), outside of both, so that they may throw and publish. Only packets on
+/// channels of ours (or those of the options) and of legal size are delivered; their bytes are not looked at.
 class LcmBus final : public Bus {
  public:
   /// @param url  As parseUrl(); recv_buf_size is added when absent.

@@ -65,6 +65,9 @@ class LinkEmulator final : public Bus {
   /// delivered, which may be 0 although something was on the air.
   int receive(int timeout_ms, const std::function<void(const Packet&)>& handler) override;
 
+  size_t trailerBytes() const override { return air_.trailerBytes(); }
+  void countInto(Stats& stats) override { air_.countInto(stats); }
+
   const LinkCounts& counts() const { return counts_; }
 
   /// Messages on their way: at most 65536, what comes above that is dropped as overflow.

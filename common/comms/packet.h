@@ -33,13 +33,16 @@ inline constexpr std::array<std::string_view, kNumTrafficClasses> kTrafficClassN
 struct Packet {
   std::string channel;
   Bytes bytes;
+  size_t trailer = 0;  ///< Bytes that stand behind it on the wire: what a bus adds when it publishes.
 };
 
 /// A datagram's cost on the wire: payload, channel with its NUL, LCM's 8-byte header, UDP 8, IP 20.
 constexpr size_t wireSize(size_t channel_length, size_t payload) {
   return payload + channel_length + 1 + 8 + 28;
 }
-inline size_t wireSize(const Packet& packet) { return wireSize(packet.channel.size(), packet.bytes.size()); }
+inline size_t wireSize(const Packet& packet) {
+  return wireSize(packet.channel.size(), packet.bytes.size() + packet.trailer);
+}
 
 /// No message is larger: LCM header, channel, NUL and payload together (DESIGN: every message <= 1400 bytes).
 inline constexpr size_t kMaxMessageBytes = 1400;
@@ -47,7 +50,7 @@ constexpr size_t messageSize(size_t channel_length, size_t payload) {
   return 8 + channel_length + 1 + payload;
 }
 inline size_t messageSize(const Packet& packet) {
-  return messageSize(packet.channel.size(), packet.bytes.size());
+  return messageSize(packet.channel.size(), packet.bytes.size() + packet.trailer);
 }
 
 /// The largest datagram on the wire.

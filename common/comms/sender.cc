@@ -31,7 +31,8 @@ int64_t Sender::pump(int64_t now_us) {
     const Made* next = make(now_us);
     const bool content_first = heartbeat_went_last_ && next != nullptr;
     if (heartbeat_.dueAt() <= now_us && !content_first) {
-      const Packet packet = options_.make_heartbeat(now_us);
+      Packet packet = options_.make_heartbeat(now_us);
+      packet.trailer = link_.trailerBytes();
       if (const int64_t at_us = earliest(now_us, packet); at_us > now_us) return at_us;
       send(packet, TrafficClass::kHeartbeat, false, now_us);
       heartbeat_.sent(now_us, wireSize(packet));
@@ -69,6 +70,7 @@ const Sender::Made* Sender::make(int64_t now_us) {
       too_many = count;
     } else {
       made_->packet = std::move(*joined);
+      made_->packet.trailer = link_.trailerBytes();
       made_->count = count;
       if (bytes * 8 > options_.most_joined_bytes * 7) break;  // full enough
     }
@@ -83,7 +85,7 @@ void Sender::sendLocal(const Packet& packet) {
   if (local_ == nullptr) return;
   pacer_.pace();
   local_->publish(packet);
-  stats_.countSent(TrafficClass::kLocal, wireSize(packet), false);
+  stats_.countSent(TrafficClass::kLocal, wireSize(packet) + local_->trailerBytes(), false);
 }
 
 int64_t Sender::earliest(int64_t now_us, const Packet& packet) const {

@@ -58,6 +58,7 @@ class Sender {
 
   /// As SendQueue.
   void offer(TrafficClass traffic, std::string_view key, Packet packet) {
+    packet.trailer = link_.trailerBytes();
     queue_.offer(traffic, key, std::move(packet));
   }
   void forget(std::string_view key) { queue_.forget(key); }

@@ -73,6 +73,9 @@ Json statusAnswer(const MissionView& view) {
               {"digest", {{"state", digestText(view.state_digest)}, {"map", digestText(view.map_digest)}}},
               {"nodes", Json::array()}};
   for (const NodeStatus& n : view.nodes) answer["nodes"].push_back(toJson(n));
+  answer["strangers"] = Json::array();
+  for (const StrangerStatus& s : view.strangers)
+    answer["strangers"].push_back({{"name", s.name}, {"has", s.has}, {"messages", s.messages}});
   return answer;
 }
 

@@ -33,6 +33,13 @@ struct NodeStatus {
   std::string agreement = "none";
 };
 
+/// Somebody who speaks on the mission's channels without its key.
+struct StrangerStatus {
+  std::string name;  ///< of the channel; anybody may use any
+  std::string has;   ///< "no key", "other key", or "a key" when who answers has none
+  uint64_t messages = 0;
+};
+
 /// A mission as one place knows it: a live node, a finished run or a recording. All questions are asked of
 /// it.
 struct MissionView {
@@ -40,7 +47,8 @@ struct MissionView {
   double cell_size_m = 1.0;
   GlobalMap map;
   uint64_t state_digest = 0, map_digest = 0;
-  std::vector<NodeStatus> nodes;  ///< robots first, by number, then the others by name
+  std::vector<NodeStatus> nodes;               ///< robots first, by number, then the others by name
+  std::vector<StrangerStatus> strangers = {};  ///< by name
 };
 
 /// Answers as JSON objects; docs/operators.md shows one of each.

@@ -10,9 +10,13 @@ namespace shoal::wire {
 /// at least its NUL. Senders subtract the length of their channel too: see maxPayload().
 inline constexpr size_t kMaxMessageBytes = 1400 - 8 - 1;
 
-/// What may be sent on a channel of that many letters, so that LCM header, channel, NUL and message together
-/// stay within 1400 bytes. @p channel_length at most 63, LCM's own limit.
-constexpr size_t maxPayload(size_t channel_length) { return kMaxMessageBytes - channel_length; }
+/// Left free at the end of every datagram for the seal of a team with a key (comms/seal.h), with a key or
+/// not: so that what is said, and how it is cut, does not depend on it.
+inline constexpr size_t kSealRoom = 16;
+
+/// What may be sent on a channel of that many letters, so that LCM header, channel, NUL, message and seal
+/// together stay within 1400 bytes. @p channel_length at most 63, LCM's own limit.
+constexpr size_t maxPayload(size_t channel_length) { return kMaxMessageBytes - kSealRoom - channel_length; }
 
 // Caps on what one message may make a receiver hold. No honest sender reaches them.
 inline constexpr int32_t kMaxRobotNumber = 9999;

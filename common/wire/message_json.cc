@@ -47,8 +47,8 @@ json fields(const Heartbeat& h) {
          {"rejected", h.rejected},
          {"conflicts", h.conflicts},
          {"ms_per_frame", double{h.ms_per_frame}}};
-  constexpr std::array kClasses = {"heartbeat", "matches", "topics",   "bricks", "certainty",
-                                   "pictures",  "local",   "requests", "repairs"};
+  constexpr std::array kClasses = {"heartbeat", "matches",  "topics", "bricks",
+                                   "certainty", "pictures", "local"};
   for (size_t c = 0; c < kClasses.size(); ++c) j["class_bytes"][kClasses[c]] = h.class_bytes[c];
   j["roster"] = json::array();
   for (const auto& share : h.roster) j["roster"].push_back(json::array({number(share.robot), share.digest}));

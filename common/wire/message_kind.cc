@@ -111,6 +111,16 @@ Result<Header> peek(std::span<const uint8_t> bytes) {
   return Header{*kind, {us}, static_cast<int32_t>(bigEndian(bytes.subspan(16, 4)))};
 }
 
+Result<size_t> bytesBehind(std::span<const uint8_t> bytes) {
+  const auto header = peek(bytes);
+  if (!header) return header.error();
+  const size_t fixed = fixedBytesOf(header->kind);
+  if (bytes.size() < fixed) return DecodeError::kTooShort;
+  const uint64_t declared = bigEndian(bytes.subspan(fixed - 4, 4));
+  if (declared > bytes.size() - fixed) return DecodeError::kBadLength;  // negative ones too
+  return static_cast<size_t>(bytes.size() - fixed - declared);
+}
+
 void stampTime(std::span<uint8_t> message, world::Timestamp time) {
   const auto header = peek(message);
   SHOAL_DEMAND(header.ok() && time.us >= 0 && time.us <= kMaxTimeUs);

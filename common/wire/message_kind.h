@@ -57,6 +57,10 @@ struct Header {
 /// Reads the front of a message without decoding the rest: says nothing about whether the rest is good.
 Result<Header> peek(std::span<const uint8_t> bytes);
 
+/// How many bytes follow what the message declares as its own length: 0 of a whole message, kSealRoom of one
+/// that is sealed. Says nothing about whether the message is good.
+Result<size_t> bytesBehind(std::span<const uint8_t> bytes);
+
 /// Writes the time of sending into an encoded message of ours, checksum included. Content is encoded once,
 /// with time 0, so that equal content is equal bytes in the send queue; it is stamped when it goes out.
 void stampTime(std::span<uint8_t> message, world::Timestamp time);

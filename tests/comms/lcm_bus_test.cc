@@ -147,6 +147,31 @@ TEST(LcmBusTest, CraftedDatagramsDoNotDisturb) {
   EXPECT_EQ(bus.counts().dropped, 0u);
 }
 
+// Each of the first two crashes liblcm 1.3.1 and all that listen through it: a fragment shorter than its own
+// header, and one whose offset wraps around 32 bits.
+TEST(LcmBusTest, FragmentsThatCrashLiblcmDoNotHarmUs) {
+  const auto fragment = [](uint32_t size, uint32_t offset, uint32_t number_and_count, const Bytes& rest) {
+    Bytes out = {'L', 'C', '0', '3', 0, 0, 0, 9};
+    for (const uint32_t value : {size, offset, number_and_count})
+      for (const int shift : {24, 16, 8, 0}) out.push_back(static_cast<uint8_t>(value >> shift));
+    out.insert(out.end(), rest.begin(), rest.end());
+    return out;
+  };
+  Bytes channel_and_more = {'S', 'H', 'O', 'A', 'L', '_', 'R', '0', '0', '_', 'X', 0};
+  channel_and_more.resize(1000, 7);
+  LcmBus bus(kUrl), other(kUrl);
+  RawSocket raw;
+  for (const Bytes& crafted :
+       {Bytes{'L', 'C', '0', '3', 0, 0, 0, 9, 0, 1}, fragment(2000, 0xfffffff0, 0x00010002, channel_and_more),
+        fragment(3000, 0, 0x00000002, channel_and_more),
+        fragment(0x0fffffff, 0, 0x00000002, channel_and_more), fragment(1000, 0, 0, channel_and_more)}) {
+    for (int times = 0; times < 5; ++times) raw.send(crafted);
+    other.publish(packet("SHOAL_R00_ALIVE", {1}));
+    ASSERT_EQ(hear(bus, 1).size(), 1u);
+    hear(other, 1);
+  }
+}
+
 TEST(LcmBusTest, DropsAndCountsWhatDoesNotFitItsQueue) {
   LcmBus bus(kUrl, {.max_queue = 10});
   for (uint8_t i = 0; i < 15; ++i) bus.publish(packet("SHOAL_R00_X", {i}));

@@ -506,6 +506,68 @@ class ByHand(unittest.TestCase):
         done = run(CONSOLE, "launch", "--world", "reef:tuning", *SIZE, "--lcm-url", url, "--out", self.top + "/x", expect=1)
         self.assertRegex(done.stderr, r"another mission \(\d+\) is heard")
 
+    def test_only_who_has_the_key_is_listened_to(self):
+        import socket
+        keys = [os.path.join(self.top, name) for name in ("team.key", "other.key")]
+        for key in keys:
+            said = run(CONSOLE, "keygen", key).stdout
+            self.assertNotIn(read(key).decode().split()[1], said)
+            self.assertEqual(os.stat(key).st_mode & 0o777, 0o600)
+        self.assertIn("never overwritten", run(CONSOLE, "keygen", keys[0], expect=2).stderr)
+        url = ["--lcm-url", "udpm://239.255.76.67:7815?ttl=0", "--rate", "max", "--mission", "secret"]
+        states = [os.path.join(self.top, name) for name in ("with", "without")]
+        log = os.path.join(self.top, "sealed.lcmlog")
+        ears = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        ears.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        ears.bind(("", 7815))
+        ears.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, socket.inet_aton("239.255.76.67") + bytes(4))
+        ears.setblocking(False)
+        recorder = subprocess.Popen(["lcm-logger", "--lcm-url=" + url[1] + "&recv_buf_size=2097152", log],
+                                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.addCleanup(recorder.kill)
+        self.wait_for(lambda: os.path.exists(log))
+        node = self.start("fusion_node", *url, "--state", states[0], "--key", keys[0])
+        outsider = self.start("fusion_node", *url, "--state", states[1], "--node", "SHORE")
+        self.wait_for(lambda: all(os.path.exists(state + "/node.sock") for state in states))
+        flight = ["--source", "reef:tuning", "--robots", "3", "--observations", "3"]
+        robots = [self.start("robot_agent", "--robot", f"R0{r}", *flight, *url, *more)
+                  for r, more in enumerate([["--key", keys[0], "--linger"], ["--linger"], ["--key", keys[1], "--linger"]])]
+
+        def heard(state):
+            status = ask("status", "--node", state)
+            check_schema("status", status)
+            return ([n["name"] for n in status["nodes"] if n["phase"] == "landed" and n["heard_whole"]],
+                    {s["name"]: s["has"] for s in status["strangers"]})
+
+        self.wait_for(lambda: heard(states[0]) == (["R00"], {"R01": "no key", "R02": "other key", "SHORE": "no key"}))
+        self.wait_for(lambda: heard(states[1]) == (["R01"], {"R00": "a key", "R02": "a key", "OPERATOR": "a key"}))
+        self.assertRegex(run(CONSOLE, "status", "--node", states[0]).stdout, r"R01 +stranger has no key: \d+ messages")
+        # All that was said, said again by somebody else, byte for byte.
+        again = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        again.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, 0)
+        for _ in range(20):
+            try:
+                again.sendto(ears.recv(2000), ("239.255.76.67", 7815))
+            except BlockingIOError:
+                break
+        time.sleep(0.5)
+        for process in [*robots, node, outsider, recorder]:
+            process.send_signal(signal.SIGINT)
+            code = process.wait(timeout=60)
+            self.assertTrue(code == 0 or process is recorder, code)
+        self.assertRegex(read(os.path.join(self.top, "log0")).decode(), r"[1-9]\d* replayed")
+        for path in glob.glob(self.top + "/log*"):
+            for key in keys:
+                self.assertNotIn(read(key).split()[1], read(path))
+        checked = ask("verify", log, "--key", keys[0])
+        check_schema("verify", checked)
+        self.assertEqual((checked["seals"]["checked"], [n["node"] for n in checked["nodes"]]), (True, ["OPERATOR", "R00"]))
+        self.assertGreater(checked["seals"]["refused"], 0)
+        self.assertTrue(checked["budget_kept"], checked)
+        unchecked = json.loads(subprocess.run([CONSOLE, "verify", log, "--json"], capture_output=True, text=True).stdout)
+        self.assertEqual((unchecked["seals"]["checked"], unchecked["seals"]["refused"]), (False, 0))
+        self.assertIn("R02", [n["node"] for n in unchecked["nodes"]])
+
     def test_rubbish_on_the_bus_is_counted_and_hurts_nobody(self):
         import socket
         url = ["--lcm-url", "udpm://239.255.76.67:7814?ttl=0", "--rate", "max"]

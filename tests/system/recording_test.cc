@@ -95,7 +95,7 @@ struct Mission {
       for (int shift = 8 * (bytes - 1); shift >= 0; shift -= 8) file.put(static_cast<char>(value >> shift));
     };
     for (size_t i = 0; i < packets.size(); ++i) {
-      const auto& [channel, bytes] = packets[i];
+      const auto& [channel, bytes, trailer] = packets[i];
       put(0xEDA1DA01, 4), put(i, 8), put(i, 8), put(channel.size(), 4), put(bytes.size(), 4);
       file << channel;
       file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));

@@ -173,6 +173,25 @@ class Recording(unittest.TestCase):
     def test_what_is_refused_is_counted_as_ours(self):
         self.assertEqual(dict(self.mission.refused), self.state["refused"])
 
+    def test_a_key_leaves_out_what_it_did_not_seal(self):
+        log, key, other = (os.path.join(self.top, name) for name in ("sealed.lcmlog", "team.key", "other.key"))
+        checked = shoal_reader.read_log(log, key=shoal_reader.read_key(key))
+        self.assertEqual(checked.state_digest(), self.state["state_digest"])
+        refused = dict(checked.refused)
+        ours = [channel for _, channel, _ in shoal_reader.Log(self.log)]
+        self.assertEqual(refused.pop("not of our key"), sum(c.startswith("SHOAL_") for c in ours[::5]))
+        strangers = refused.pop("channel", 0)  # without a seal they are none of ours either
+        expected = dict(self.state["refused"])
+        self.assertLessEqual(strangers, expected.pop("channel", 0))
+        self.assertEqual(refused, expected)
+        # Unseen: the seals come off, the checksums still find what was altered.
+        self.assertEqual(shoal_reader.read_log(log).state_digest(), self.state["state_digest"])
+        self.assertIn("whole", run(log, "--key", key, "--json").stdout)
+        self.assertIn("no heartbeat", run(log, "--key", other, expect=1).stderr)
+        self.assertIn("no key file", run(log, "--key", self.log, expect=1).stderr)
+        lines = [json.loads(line) for line in run("--messages", log, "--key", key).stdout.splitlines()]
+        self.assertEqual(sum(line.get("refused") == "not of our key" for line in lines), checked.refused["not of our key"])
+
     def test_the_published_map_is_ours(self):
         fused = self.mission.map()
         self.assertEqual((fused["node"], fused["source"], fused["digest"]), ("OPERATOR", "MAP", self.state["map_digest"]))

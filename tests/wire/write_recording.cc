@@ -3,7 +3,8 @@
 // state.json and global_map.csv. The log has what a real one may have: parts out of order and twice, old
 // versions, an earlier life of a robot, a newer version without its part 0, damaged and foreign messages.
 // everything.lcmlog holds the same, then the most unlike messages there can be; messages.jsonl is what our
-// decoders make of each.
+// decoders make of each. sealed.lcmlog is mission.lcmlog with the seals of team.key, and after every fifth
+// message another that a stranger altered.
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
@@ -17,6 +18,7 @@
 #include "examples.h"
 #include "fusion_node/mission_state.h"
 #include "shoal/comms/packet.h"
+#include "shoal/comms/seal.h"
 #include "shoal/mapping/map_files.h"
 #include "shoal/wire/checksum.h"
 #include "shoal/wire/labels_codec.h"
@@ -211,6 +213,19 @@ std::vector<comms::Packet> strangeMessages(Random& random) {
   return packets;
 }
 
+Bytes sealedLog(const std::vector<comms::Packet>& packets, const comms::SealKey& key) {
+  Bytes log;
+  for (size_t i = 0; i < packets.size(); ++i) {
+    comms::Packet packet = packets[i];
+    if (packet.channel.starts_with("SHOAL_")) comms::addSeal(key, {9, static_cast<uint32_t>(i)}, packet);
+    append(log, packet, log.size());
+    if (i % 5 != 0 || !packet.channel.starts_with("SHOAL_")) continue;
+    packet.bytes[packet.bytes.size() / 2] ^= 1;
+    append(log, packet, log.size());
+  }
+  return log;
+}
+
 void write(const std::string& path, std::span<const char> text) {
   std::ofstream file(path, std::ios::binary);
   file.write(text.data(), static_cast<std::streamsize>(text.size()));
@@ -265,6 +280,10 @@ void run(const std::string& folder) {
   };
   std::ranges::for_each(packets, record);
   save("mission.lcmlog");
+  const comms::SealKey key = comms::SealKey::make(folder + "/team.key");
+  comms::SealKey::make(folder + "/other.key");
+  const Bytes sealed = sealedLog(packets, key);
+  write(folder + "/sealed.lcmlog", {reinterpret_cast<const char*>(sealed.data()), sealed.size()});
   std::ranges::for_each(strangeMessages(random), record);
   save("everything.lcmlog");
   write(folder + "/messages.jsonl", lines);

@@ -33,10 +33,11 @@ from shoal_wire.log import Log
 from shoal_wire.message import decode, parse_channel, parse_datagram, peek, robot_name
 from shoal_wire.mission import Mission, read_log
 from shoal_wire.picture import color_of, png
+from shoal_wire.seal import read_key, unsealed
 from shoal_wire.tables import map_csv, robot_csv
 
 __all__ = ["BadFile", "BadMessage", "Log", "Mission", "color_of", "decode", "map_csv", "parse_channel",
-           "parse_datagram", "peek", "png", "read_log", "robot_csv", "robot_name", "summary"]
+           "parse_datagram", "peek", "png", "read_key", "read_log", "robot_csv", "robot_name", "summary", "unsealed"]
 
 
 def summary(mission, fused):
@@ -84,22 +85,22 @@ def _write(path, data):
         raise BadFile(f"cannot write {path}: {error.strerror}") from None
 
 
-def _print_messages(path):
+def _print_messages(path, key):
     log = Log(path)
     if log.data[:4] == b"LC02":
         channel, data = parse_datagram(log.data[:])
-        print(json.dumps({"channel": channel, **decode(data)}))
+        print(json.dumps({"channel": channel, **decode(unsealed(channel, data, key))}))
     elif len(log.data) >= 8 and struct.unpack(">Q", log.data[:8])[0] in KINDS:
         print(json.dumps({"channel": "", **decode(log.data[:])}))
     else:
-        _print_log(log)
+        _print_log(log, key)
 
 
-def _print_log(log):
+def _print_log(log, key):
     count = 0
     for _, channel, data in log:
         try:
-            line = {"channel": channel, **decode(data)}
+            line = {"channel": channel, **decode(unsealed(channel, data, key if parse_channel(channel) else None))}
         except BadMessage as error:
             line = {"channel": channel, "refused": error.reason, "detail": str(error)}
         print(json.dumps(line))
@@ -109,10 +110,11 @@ def _print_log(log):
 
 
 def _run(options):
+    key = read_key(options.key) if options.key else None
     if options.messages:
-        _print_messages(options.log)
+        _print_messages(options.log, key)
         return
-    mission = read_log(options.log, options.mission)
+    mission = read_log(options.log, options.mission, key)
     if options.robot and options.robot not in mission.robots():
         raise BadFile(f"{options.log} holds nothing of {options.robot}; "
                       f"it holds {', '.join(mission.robots()) or 'no robot'}")
@@ -152,6 +154,7 @@ def main(arguments=None):
     parser.add_argument("--node", metavar="NAME", help="whose fused map (default: OPERATOR's, else the first by name)")
     parser.add_argument("--mission", metavar="ID", type=int,
                         help="which mission (default: that of the first heartbeat)")
+    parser.add_argument("--key", metavar="FILE", help="the team's key: leave out what it did not seal")
     options = parser.parse_args(arguments)
     if options.messages and (options.png or options.csv or options.json or options.robot or options.node):
         parser.error("--messages goes with no other output")

@@ -7,6 +7,7 @@ from .errors import BadFile, BadMessage, require
 from .layout import LAYOUT, MASK, OPERATORS
 from .log import Log
 from .message import decode, keys_of, parse_channel, peek, pieces_of, repaired, robot_name, unframe
+from .seal import unsealed
 
 
 class _Lists:
@@ -40,8 +41,9 @@ class _Lists:
 class Mission:
     """What the messages of one mission add up to. What is bad is counted by reason in `refused` and left out."""
 
-    def __init__(self, mission):
+    def __init__(self, mission, key=None):
         self.mission = mission
+        self._key = key
         self.refused = collections.Counter()
         self.heard = 0
         self.heartbeats = {}  # node -> the latest
@@ -54,11 +56,12 @@ class Mission:
         self._edits = {}      # edit_hash -> decoded
 
     def hear(self, channel, data):
-        """Takes in a message that came on a channel."""
+        """Takes in a message that came on a channel, with its seal or without."""
         try:
             known = parse_channel(channel)
             require(known, channel, "channel")
             node, channel_kind = known
+            data = unsealed(channel, data, self._key)
             kind, _, mission = peek(data)
             require(kind == channel_kind, f"{kind} on {channel}", "wrong type")
             require(mission == self.mission, str(mission), "other mission")
@@ -275,13 +278,16 @@ class Mission:
         return cells
 
 
-def read_log(path, mission=None):
-    """The Mission that an LCM log holds: `mission`, else that of its first heartbeat. BadFile when there is none."""
+def read_log(path, mission=None, key=None):
+    """The Mission that an LCM log holds: `mission`, else that of its first heartbeat. BadFile when there is none.
+
+    key: of the team, read_key(FILE): what it did not seal is left out. Without it seals are not checked.
+    """
     log = Log(path)
     if mission is None:
-        for _, _, data in log:
+        for _, channel, data in log:
             try:
-                kind, _, said = peek(data)
+                kind, _, said = peek(unsealed(channel, data, key))
             except BadMessage:
                 continue
             if kind == "HEARTBEAT":
@@ -289,7 +295,7 @@ def read_log(path, mission=None):
                 break
         if mission is None:
             raise BadFile(f"{path} holds no heartbeat of a mission; is it an LCM log?")
-    state = Mission(mission)
+    state = Mission(mission, key)
     for _, channel, data in log:
         state.hear(channel, data)
     if log.damaged:

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "operator_console/message_log.h"
+
+#include <nlohmann/json.hpp>
+
+#include <spdlog/fmt/fmt.h>
+
+#include "fusion_node/authentication.h"
+
+namespace shoal::console {
+
+nlohmann::ordered_json SealCounts::json() const {
+  return {{"sealed", sealed}, {"checked", checked}, {"refused", refused}};
+}
+
+std::string SealCounts::text() const {
+  if (checked) return fmt::format("seals: {} right, {} refused\n", sealed, refused);
+  return sealed == 0 ? "" : fmt::format("seals: {} messages have one, NOT checked: give --key\n", sealed);
+}
+
+MessageLog::MessageLog(const std::string& path, const std::string& key_file)
+    : key_(fusion_node::readKey(key_file)), log_(path) {
+  seals_.checked = key_.has_value();
+}
+
+std::optional<comms::LogEvent> MessageLog::next() {
+  while (auto event = log_.next()) {
+    if (!event->packet.channel.starts_with("SHOAL_")) return event;  // cameras, LCM's own self test
+    const bool is_sealed =
+        key_ ? comms::checkSeal(*key_, event->packet).has_value() : fusion_node::isSealed(event->packet);
+    if (is_sealed) {
+      ++seals_.sealed;
+      comms::removeSeal(event->packet);
+    } else if (key_) {
+      ++seals_.refused;
+      continue;
+    }
+    return event;
+  }
+  return std::nullopt;
+}
+
+}  // namespace shoal::console

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "shoal/comms/log_reader.h"
+#include "shoal/comms/seal.h"
+
+namespace shoal::console {
+
+/// What became of the seals of a recording's messages.
+struct SealCounts {
+  int64_t sealed = 0;    ///< messages that carry one
+  bool checked = false;  ///< with a key; else they were removed unseen
+  int64_t refused = 0;   ///< messages on our channels without a right one, left out; 0 unless checked
+
+  nlohmann::ordered_json json() const;
+  std::string text() const;  ///< a line, or nothing when there is nothing to say
+};
+
+/// Reads a recording's messages as LogReader does, without their seals. With a key, messages on our channels
+/// that it did not seal are left out; repeated ones are not, for a state takes no harm from them.
+class MessageLog {
+ public:
+  /// @param key_file  empty: seals are removed unseen.
+  /// @throws std::runtime_error as LogReader, std::invalid_argument as SealKey::read().
+  explicit MessageLog(const std::string& path, const std::string& key_file = {});
+
+  std::optional<comms::LogEvent> next();
+
+  const comms::LogCounts& counts() const { return log_.counts(); }
+  const SealCounts& seals() const { return seals_; }
+
+ private:
+  std::optional<comms::SealKey> key_;
+  comms::LogReader log_;
+  SealCounts seals_;
+};
+
+}  // namespace shoal::console
