@@ -64,13 +64,20 @@ MissionState::MissionState(int32_t mission, const matching::MatcherOptions& matc
 }
 
 void MissionState::hear(const comms::Packet& packet, comms::Stats& stats) {
+  take(packet, stats);
+  events_.refused(packet.channel, stats);
+}
+
+void MissionState::take(const comms::Packet& packet, comms::Stats& stats) {
   const auto channel = comms::parseChannel(packet.channel);
   if (!channel) return stats.countRejected("channel");
   const auto header = wire::peek(packet.bytes);
   if (!header) return stats.countRejected(wire::name(header.error()));
   if (wire::channelKind(header->kind) != channel->kind) return stats.countRejected("wrong type");
   if (header->mission != mission_) {
-    if (other_missions_.size() < kMaxOtherMissions) other_missions_.insert(header->mission);
+    if (other_missions_.size() < kMaxOtherMissions && other_missions_.insert(header->mission).second) {
+      events_.otherMission(header->mission);
+    }
     return stats.countRejected("other mission");
   }
   switch (header->kind) {
@@ -80,6 +87,7 @@ void MissionState::hear(const comms::Packet& packet, comms::Stats& stats) {
       if (!heartbeats_.contains(channel->node) && heartbeats_.size() >= kMaxNodes) {
         return stats.countRejected("too many nodes");
       }
+      events_.heard(channel->node, *heartbeat);
       wire::Heartbeat& held = heartbeats_[channel->node];
       const auto age = [](const wire::Heartbeat& h) { return std::pair(h.epoch, h.time); };
       if (age(*heartbeat) >= age(held)) held = *heartbeat;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "fusion_node/event_log.h"
 #include "shoal/comms/packet.h"
 #include "shoal/comms/stats.h"
 #include "shoal/mapping/belief_store.h"
@@ -37,6 +38,11 @@ class MissionState {
 
   /// Takes a message in. Refusals are counted in `stats`.
   void hear(const comms::Packet& packet, comms::Stats& stats);
+
+  /// Wall time, seconds, growing: who is silent for long is lost.
+  void passTime(double wall_s) { events_.passTime(wall_s); }
+  /// What happened to nodes, as it was heard here.
+  std::vector<mapping::MissionEvent> events() const { return events_.events(); }
 
   /// Takes in a piece of one's own.
   mapping::Applied apply(const mapping::Piece& piece);
@@ -71,6 +77,9 @@ class MissionState {
   const matching::MatcherOptions& matcher() const { return matcher_; }
 
  private:
+  void take(const comms::Packet& packet, comms::Stats& stats);
+
+  EventLog events_;
   int32_t mission_;
   matching::MatcherOptions matcher_;
   double cell_size_m_;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include <spdlog/spdlog.h>
@@ -50,7 +51,8 @@ Node::Node(const NodeOptions& options, comms::Bus& link, comms::Bus& local)
       local_(local),
       clock_(options.rate),
       sender_(link, &local,
-              senderOptions(options.budget, [this](int64_t now_us) { return heartbeat(now_us); })) {
+              senderOptions(options.budget, [this](int64_t now_us) { return heartbeat(now_us); })),
+      silence_(options.budget, wallMs()) {
   if (!options.state_dir.empty()) {
     loadEdits();
     queries_.emplace(options.state_dir, [this](const Json& question) { return answer(question); });
@@ -64,8 +66,14 @@ int64_t Node::wallMs() const {
 }
 
 void Node::turn(int timeout_ms) {
-  const auto hear = [this](const comms::Packet& packet) { state_.hear(packet, sender_.stats()); };
+  const std::string own = "SHOAL_" + options_.name + "_";
+  const auto hear = [&](const comms::Packet& packet) {
+    if (!packet.channel.starts_with(own)) silence_.heard(wallMs());
+    state_.hear(packet, sender_.stats());
+  };
   link_.receive(timeout_ms, hear);
+  state_.passTime(static_cast<double>(wallMs()) * 1e-3);
+  if (const auto warning = silence_.check(wallMs())) spdlog::warn("{}", *warning);
   if (options_.rate == 0) clock_.advanceTo(state_.latestTime().us);
 
   const int64_t wall = wallMs();
@@ -183,7 +191,12 @@ Json Node::answer(const Json& question) {
   state_.refreshMap();
   const mapping::MissionView view = state_.view();
   const auto beliefs = [this]() -> const mapping::BeliefStore& { return state_.beliefs(); };
-  return mapping::answer({view, beliefs, state_.matcher()}, question);
+  Json answer =
+      mapping::answer({view, beliefs, state_.matcher(), [this] { return state_.events(); }}, question);
+  if (question.value("query", "") == "status" && !answer.contains("error")) {
+    answer["silent_s"] = std::round(silence_.silentSeconds(wallMs()) * 10) / 10;
+  }
+  return answer;
 }
 
 void Node::finish() {

@@ -8,6 +8,7 @@
 
 #include "fusion_node/mission_state.h"
 #include "fusion_node/query_server.h"
+#include "fusion_node/silence_alarm.h"
 #include "shoal/comms/bus.h"
 #include "shoal/comms/mission_clock.h"
 #include "shoal/comms/sender.h"
@@ -59,6 +60,7 @@ class Node {
   comms::MissionClock clock_;
   comms::Sender sender_;
   std::optional<QueryServer> queries_;
+  SilenceAlarm silence_;
   std::map<std::string, size_t> num_chunks_;  // in the send queue, by channel
   uint64_t published_digest_ = 0;
   int64_t fused_at_ms_ = 0, published_at_ms_ = 0;

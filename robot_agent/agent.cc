@@ -55,6 +55,12 @@ std::string queueKey(const mapping::PieceKey& key, int32_t part) {
   return text + '/' + std::to_string(part);
 }
 
+int64_t wallMs() {
+  return std::chrono::duration_cast<std::chrono::milliseconds>(
+             std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
 void writeOut(const std::string& folder, const mapping::LocalBelief& belief, double cell_size_m,
               const std::vector<mapping::StampedPose>& path) {
   mapping::writeBelief(folder, belief, world::Grid(cell_size_m));
@@ -72,14 +78,18 @@ Agent::Agent(const AgentOptions& options, world::ObservationSource& source, comm
       belief_{.robot = options.explorer.robot, .version = {}, .groups = {}, .topics = {}, .cells = {}},
       others_(options.mission, options.matcher),
       clock_(options.rate, options.start_us),
-      sender_(bus, nullptr, [&] {
-        comms::SenderOptions sender;
-        sender.bytes_per_s = options.budget;
-        sender.stamp = [](comms::Packet& packet, int64_t now_us) { wire::stampTime(packet.bytes, {now_us}); };
-        if (options.start_us > 0) sender.resumed_at_us = options.start_us;
-        sender.make_heartbeat = [this](int64_t now_us) { return heartbeat(now_us); };
-        return sender;
-      }()) {}
+      sender_(bus, nullptr,
+              [&] {
+                comms::SenderOptions sender;
+                sender.bytes_per_s = options.budget;
+                sender.stamp = [](comms::Packet& packet, int64_t now_us) {
+                  wire::stampTime(packet.bytes, {now_us});
+                };
+                if (options.start_us > 0) sender.resumed_at_us = options.start_us;
+                sender.make_heartbeat = [this](int64_t now_us) { return heartbeat(now_us); };
+                return sender;
+              }()),
+      silence_(options.budget, wallMs()) {}
 
 void Agent::run() {
   fly();
@@ -167,10 +177,13 @@ void Agent::passTimeUntil(int64_t to_us) {
 }
 
 void Agent::listen(int timeout_ms) {
-  bus_.receive(timeout_ms, [this](const comms::Packet& packet) {
+  const std::string own = "SHOAL_" + name_ + "_";
+  bus_.receive(timeout_ms, [&](const comms::Packet& packet) {
+    if (!packet.channel.starts_with(own)) silence_.heard(wallMs());
     if (!options_.fuse && !packet.channel.ends_with("_HEARTBEAT")) return;
     others_.hear(packet, sender_.stats());
   });
+  if (const auto warning = silence_.check(wallMs())) spdlog::warn("{}", *warning);
   if (options_.fuse && phase_ != wire::Phase::kFlying) others_.refreshMap();
   for (; warned_of_missions_ < others_.otherMissions().size(); ++warned_of_missions_) {
     spdlog::warn("another mission is heard on this URL; ours is {}", options_.mission);

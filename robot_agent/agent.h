@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "fusion_node/mission_state.h"
+#include "fusion_node/silence_alarm.h"
 #include "shoal/comms/bus.h"
 #include "shoal/comms/mission_clock.h"
 #include "shoal/comms/sender.h"
@@ -69,6 +70,7 @@ class Agent {
   std::vector<mapping::StampedPose> path_;
   wire::Phase phase_ = wire::Phase::kFlying;
   double total_ms_ = 0;
+  fusion_node::SilenceAlarm silence_;
   bool warned_of_twin_ = false;
   size_t warned_of_missions_ = 0;
 };
