@@ -8,9 +8,9 @@ install(TARGETS robot_agent fusion_node operator_console RUNTIME DESTINATION ${C
 install(PROGRAMS ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}/shoal-spy DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(FILES ${PROJECT_BINARY_DIR}/share/shoal/shoal_types.jar DESTINATION ${CMAKE_INSTALL_DATADIR}/shoal OPTIONAL)
 install(DIRECTORY lcmtypes/ DESTINATION ${CMAKE_INSTALL_DATADIR}/shoal/lcmtypes FILES_MATCHING PATTERN "*.lcm")
-install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(FILES README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)  # where Debian looks
+install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/shoal)
+install(FILES README.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/shoal)
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/shoal RENAME copyright)  # where Debian looks
 
 # What the console itself says completes it.
 set(completion ${PROJECT_BINARY_DIR}/completion)

@@ -30,6 +30,8 @@ void addDiffCommand(CLI::App& app, Action& chosen);
 void addNodeCommand(CLI::App& app, Action& chosen);
 /// name, link, unlink, exclude, undo; edits, which lists them; events.
 void addEditCommands(CLI::App& app, Action& chosen);
+/// summary: a finished mission as an HTML page.
+void addSummaryCommand(CLI::App& app, Action& chosen);
 /// score: the map as it is held, against the truth.
 void addScoreCommand(CLI::App& app, Action& chosen);
 /// completion SHELL: a script that completes commands and flags.

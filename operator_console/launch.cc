@@ -24,11 +24,13 @@
 #include "operator_console/mission_watch.h"
 #include "operator_console/progress.h"
 #include "operator_console/stop_signal.h"
+#include "operator_console/summary_page.h"
 #include "operator_console/supervisor.h"
 #include "shoal/comms/kernel_limits.h"
 #include "shoal/comms/lcm_bus.h"
 #include "shoal/comms/lcm_url.h"
 #include "shoal/comms/link_model.h"
+#include "shoal/mapping/atomic_file.h"
 #include "shoal/random.h"
 
 namespace shoal::console {
@@ -80,8 +82,9 @@ void refuseFinishedMission(const LaunchOptions& options) {
 void prepareFolder(const LaunchOptions& options) {
   const fs::path out = options.out;
   if (fs::exists(out / "logs" / "OPERATOR.log")) {
-    for (const std::string_view name : {"robots", "single", "logs", "state", "global_map.csv",
-                                        "global_map.png", "labels.csv", "summary.json", "mission.lcmlog"}) {
+    for (const std::string_view name :
+         {"robots", "single", "logs", "state", "global_map.csv", "global_map.png", "labels.csv",
+          "summary.json", "summary.html", "edits.json", "mission.lcmlog"}) {
       fs::remove_all(out / name);
     }
   }
@@ -339,6 +342,7 @@ int Mission::run(bool url_was_given) {
     run.nodes = watch_.statuses();
     run.worst_window = watch_.worstWindow();
     std::fputs(finishRun(run).c_str(), stdout);
+    mapping::writeFileAtomically(options_.out + "/summary.html", summaryPage(options_.out));
     if (lacking.empty()) return 0;
     spdlog::error("{} within {} s: {}",
                   run.converged ? "the recording is not whole" : "the nodes do not agree",

@@ -41,6 +41,7 @@ int main(int argc, char** argv) {
   console::addNodeCommand(app, chosen);
   console::addEditCommands(app, chosen);
   console::addScoreCommand(app, chosen);
+  console::addSummaryCommand(app, chosen);
   console::addSpyCommand(app, chosen);
   console::addDoctorCommand(app, chosen);
   console::addCompletionCommand(app, chosen);

@@ -30,7 +30,8 @@ double rounded(double value) { return std::round(value * 1e6) / 1e6; }
 
 // How the team flies, as far as it is known: what a run's summary says, else what its robots say. It matters
 // where the truth is projected from the frames that the team sees.
-world::SurveyOptions teamOf(const Flags& flags, const mapping::MissionView& view, const world::Place& place) {
+world::SurveyOptions teamAsFlown(const Flags& flags, const mapping::MissionView& view,
+                                 const world::Place& place) {
   if (!flags.asking.where.run.empty()) {
     return teamOf(Json::parse(mapping::readFile(flags.asking.where.run + "/summary.json")));
   }
@@ -59,7 +60,7 @@ int score(const Flags& flags) {
   const auto place = world::openPlace(flags.world, seed, camera);
   if (place->classes().empty())
     throw std::runtime_error(flags.world + " has no labels: there is nothing to score against");
-  const world::SurveyOptions team = teamOf(flags, view, *place);
+  const world::SurveyOptions team = teamAsFlown(flags, view, *place);
   const eval::TruthOfCell truth = eval::truthFor(*place, team, world::Grid(view.cell_size_m));
   std::vector<std::pair<world::CellIndex, int>> labels;
   for (const mapping::GlobalCell& c : view.map.cells) labels.emplace_back(c.cell, number(c.label));

@@ -4,6 +4,7 @@
 
 Usage: mission_test.py BIN_DIR DOCS_DIR [unittest arguments], inside a network namespace of its own.
 """
+import base64
 import csv
 import glob
 import json
@@ -201,6 +202,19 @@ class Mission(unittest.TestCase):
         check_schema("score", scored)
         told = ask("evaluate", "--run", self.a, "--world", "reef:tuning", "--matcher", "shoal")
         self.assertAlmostEqual(scored["ami"], told["matchers"]["shoal"]["ami"], places=5)
+
+    def test_the_summary_page_says_what_happened_and_needs_nothing_else(self):
+        page = read(os.path.join(self.a, "summary.html")).decode()
+        for row in ask("labels", "--run", self.a)["labels"]:
+            self.assertIn(f">{row['label']}</td>", page)
+        self.assertIn("All nodes held one map", page)
+        self.assertIn("budgets kept in every window", page)
+        self.assertNotRegex(page, r'(src|href)="(?!data:)')
+        png = re.search(r'class="map"[^>]*base64,([^"]+)"', page).group(1)
+        self.assertEqual(base64.b64decode(png), read(os.path.join(self.a, "global_map.png")))
+        again = os.path.join(self.top, "again.html")
+        run(CONSOLE, "summary", "--run", self.a, "--out", again)
+        self.assertEqual(read(again).decode(), page)
 
     def test_area_why_node_and_diff_are_answered(self):
         log = os.path.join(self.a, "mission.lcmlog")
