@@ -66,6 +66,12 @@ MissionState::MissionState(int32_t mission, const matching::MatcherOptions& matc
 }
 
 bool MissionState::hear(const comms::Packet& packet, comms::Stats& stats) {
+  const bool news = takeIn(packet, stats);
+  events_.refused(packet.channel, stats);
+  return news;
+}
+
+bool MissionState::takeIn(const comms::Packet& packet, comms::Stats& stats) {
   const auto refuse = [&stats](std::string_view reason) {
     stats.countRejected(reason);
     return false;
@@ -82,7 +88,9 @@ bool MissionState::hear(const comms::Packet& packet, comms::Stats& stats) {
     return refuse("sealed");
   }
   if (header->mission != mission_) {
-    if (other_missions_.size() < kMaxOtherMissions) other_missions_.insert(header->mission);
+    if (other_missions_.size() < kMaxOtherMissions && other_missions_.insert(header->mission).second) {
+      events_.otherMission(header->mission);
+    }
     return refuse("other mission");
   }
   switch (header->kind) {
@@ -92,6 +100,7 @@ bool MissionState::hear(const comms::Packet& packet, comms::Stats& stats) {
       if (!heartbeats_.contains(channel->node) && heartbeats_.size() >= kMaxNodes) {
         return refuse("too many nodes");
       }
+      events_.heard(channel->node, *heartbeat);
       wire::Heartbeat& held = heartbeats_[channel->node];
       const auto age = [](const wire::Heartbeat& h) { return std::pair(h.epoch, h.time); };
       if (age(*heartbeat) >= age(held)) held = *heartbeat;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "fusion_node/event_log.h"
 #include "shoal/comms/packet.h"
 #include "shoal/comms/stats.h"
 #include "shoal/mapping/belief_store.h"
@@ -39,6 +40,11 @@ class MissionState {
   /// Takes a message in. Refusals are counted in `stats`.
   /// @returns true when it holds state that was not held before.
   bool hear(const comms::Packet& packet, comms::Stats& stats);
+
+  /// Wall time, seconds, growing: who is silent for long is lost.
+  void passTime(double wall_s) { events_.passTime(wall_s); }
+  /// What happened to nodes, as it was heard here.
+  std::vector<mapping::MissionEvent> events() const { return events_.events(); }
 
   /// Takes in a piece of one's own.
   mapping::Applied apply(const mapping::Piece& piece);
@@ -85,8 +91,10 @@ class MissionState {
   const matching::MatcherOptions& matcher() const { return matcher_; }
 
  private:
+  bool takeIn(const comms::Packet& packet, comms::Stats& stats);
   bool take(const mapping::Piece& piece, bool repaired, comms::Stats& stats);
 
+  EventLog events_;
   int32_t mission_;
   matching::MatcherOptions matcher_;
   double cell_size_m_;

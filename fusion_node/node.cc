@@ -58,7 +58,8 @@ Node::Node(const NodeOptions& options, comms::Bus& link, comms::Bus& local)
       clock_(options.rate),
       sender_(link, &local,
               senderOptions(options.budget, [this](int64_t now_us) { return heartbeat(now_us); })),
-      repair_({options.name, options.mission, options.budget, {}, true, {}}, state_, sender_) {
+      repair_({options.name, options.mission, options.budget, {}, true, {}}, state_, sender_),
+      silence_(options.budget, wallMs()) {
   link.countInto(sender_.stats());
   if (!options.state_dir.empty()) {
     recall();
@@ -74,7 +75,13 @@ int64_t Node::wallMs() const {
 }
 
 void Node::turn(int timeout_ms) {
-  link_.receive(timeout_ms, [this](const comms::Packet& packet) { hear(packet); });
+  const std::string own = "SHOAL_" + options_.name + "_";
+  link_.receive(timeout_ms, [&](const comms::Packet& packet) {
+    if (!packet.channel.starts_with(own)) silence_.heard(wallMs());
+    hear(packet);
+  });
+  state_.passTime(static_cast<double>(wallMs()) * 1e-3);
+  if (const auto warning = silence_.check(wallMs())) spdlog::warn("{}", *warning);
   warnOfStrangers();
   if (options_.rate == 0) clock_.advanceTo(state_.latestTime().us);
 
@@ -220,7 +227,12 @@ Json Node::answer(const Json& question) {
   state_.refreshMap();
   const mapping::MissionView known = view();
   const auto beliefs = [this]() -> const mapping::BeliefStore& { return state_.beliefs(); };
-  return mapping::answer({known, beliefs, state_.matcher()}, question);
+  Json answer =
+      mapping::answer({known, beliefs, state_.matcher(), [this] { return state_.events(); }}, question);
+  if (question.value("query", "") == "status" && !answer.contains("error")) {
+    answer["silent_s"] = std::round(silence_.silentSeconds(wallMs()) * 10) / 10;
+  }
+  return answer;
 }
 
 mapping::MissionView Node::view() const {

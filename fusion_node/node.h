@@ -10,6 +10,7 @@
 #include "fusion_node/node_memory.h"
 #include "fusion_node/query_server.h"
 #include "fusion_node/repair.h"
+#include "fusion_node/silence_alarm.h"
 #include "shoal/comms/authenticated_bus.h"
 #include "shoal/comms/bus.h"
 #include "shoal/comms/mission_clock.h"
@@ -70,6 +71,7 @@ class Node {
   Repair repair_;
   std::optional<NodeMemory> memory_;
   std::optional<QueryServer> queries_;
+  SilenceAlarm silence_;
   std::map<std::string, size_t> num_chunks_;  // in the send queue, by channel
   size_t warned_of_strangers_ = 0;
   uint64_t published_digest_ = 0;

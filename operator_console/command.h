@@ -28,8 +28,10 @@ void addWhyCommand(CLI::App& app, Action& chosen);
 void addDiffCommand(CLI::App& app, Action& chosen);
 /// node R03: what a node has told.
 void addNodeCommand(CLI::App& app, Action& chosen);
-/// name, link, unlink, exclude, undo, and edits, which lists them.
+/// name, link, unlink, exclude, undo; edits, which lists them; events.
 void addEditCommands(CLI::App& app, Action& chosen);
+/// score: the map as it is held, against the truth.
+void addScoreCommand(CLI::App& app, Action& chosen);
 /// completion SHELL: a script that completes commands and flags.
 void addCompletionCommand(CLI::App& app, Action& chosen);
 /// keygen FILE: a key for a team.

@@ -43,6 +43,26 @@ int edits(const Judging& q) {
   return 0;
 }
 
+int events(const Judging& q, const std::string& kind) {
+  Json a = answerTo(q.asking, {{"query", "events"}});
+  if (!kind.empty()) {
+    Json chosen = Json::array();
+    for (Json& e : a["events"])
+      if (e["kind"] == kind) chosen.push_back(std::move(e));
+    a["events"] = std::move(chosen);
+  }
+  if (q.asking.json) {
+    std::cout << a.dump(2) << '\n';
+    return 0;
+  }
+  if (a["events"].empty()) fmt::print("nothing happened\n");
+  for (const Json& e : a["events"]) {
+    fmt::print("{:>9.1f} s  {:<8} {} {}\n", e["at_s"].get<double>(), e["kind"].get<std::string>(),
+               shortened(e["node"].get<std::string>(), 17), shortened(e["says"].get<std::string>(), 39));
+  }
+  return 0;
+}
+
 constexpr const char* kWhere =
     "With --node all nodes of the mission get to know it, and fuse with it. With --run or --log it is kept "
     "in\n"
@@ -109,6 +129,21 @@ void addEditCommands(CLI::App& app, Action& chosen) {
   const auto [list, asked] = add("edits", "what was decided, by whom and when, and whether it is in force",
                                  "  operator_console edits --run runs/a");
   list->callback([q = asked, &chosen] { chosen = [q] { return edits(*q); }; });
+
+  CLI::App* happened =
+      app.add_subcommand("events", "what happened: who joined, landed, was lost; labels, edits, refusals");
+  const auto q = std::make_shared<Judging>();
+  const auto kind = std::make_shared<std::string>();
+  addWhere(*happened, q->asking);
+  happened->add_option("--kind", *kind, "only these")
+      ->check(CLI::IsMember({"joined", "landed", "leaving", "again", "lost", "back", "twin", "refused",
+                             "mission", "label", "edit"}));
+  happened->footer(
+      "Labels stand at the time when their oldest topic was opened. A run that was flown without --record "
+      "knows\n"
+      "labels and edits only. refused is told at the 1st, 10th, 100th message.\n\n"
+      "  operator_console events --node state --kind lost");
+  happened->callback([q, kind, &chosen] { chosen = [q, kind] { return events(*q, *kind); }; });
 }
 
 }  // namespace shoal::console

@@ -86,8 +86,9 @@ void refuseFinishedMission(const LaunchOptions& options) {
 void prepareFolder(const LaunchOptions& options) {
   const fs::path out = options.out;
   if (fs::exists(out / "logs" / "OPERATOR.log")) {
-    for (const std::string_view name : {"robots", "single", "logs", "state", "global_map.csv",
-                                        "global_map.png", "labels.csv", "summary.json", "mission.lcmlog"}) {
+    for (const std::string_view name :
+         {"robots", "single", "logs", "state", "global_map.csv", "global_map.png", "labels.csv",
+          "summary.json", "summary.html", "edits.json", "mission.lcmlog"}) {
       fs::remove_all(out / name);
     }
   }

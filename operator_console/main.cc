@@ -41,6 +41,7 @@ int main(int argc, char** argv) {
   console::addDiffCommand(app, chosen);
   console::addNodeCommand(app, chosen);
   console::addEditCommands(app, chosen);
+  console::addScoreCommand(app, chosen);
   console::addSpyCommand(app, chosen);
   console::addDoctorCommand(app, chosen);
   console::addKeygenCommand(app, chosen);

@@ -147,6 +147,10 @@ Json askRun(const Where& where, const Json& question) {
     view.map.correspondences = again.correspondences;  // the files of a map do not hold them
     return *store;
   };
+  const std::string recording = where.run + "/mission.lcmlog";
+  if (std::filesystem::exists(recording)) {
+    witness.events = [&] { return readRecording(recording, witness.matcher).state.events(); };
+  }
   if (!mapping::isEdit(question)) return mapping::answer(witness, question);
   witness.beliefs();
   return editInFile(where, view, *store, view.map, question);
@@ -209,7 +213,7 @@ Json askFiles(const Where& where, const Json& question) {
     return editInFile(where, view, beliefs, view.map, question);
   }
   const auto beliefs = [&]() -> const mapping::BeliefStore& { return recorded.state.beliefs(); };
-  return mapping::answer({view, beliefs, where.matcher}, question);
+  return mapping::answer({view, beliefs, where.matcher, [&] { return recorded.state.events(); }}, question);
 }
 
 }  // namespace

@@ -35,6 +35,7 @@ RecordedMission readRecording(const std::string& path, const matching::MatcherOp
     if (!event->packet.channel.starts_with("SHOAL_")) continue;  // cameras, LCM's own self test
     const auto header = wire::peek(event->packet.bytes);
     if (until && header && header->time > *until) continue;
+    recorded.state.passTime(static_cast<double>(event->time_us) * 1e-6);
     recorded.state.hear(event->packet, refused);
     if (const int64_t now_refused = total(refused); now_refused != recorded.refused) {
       recorded.refused = now_refused;

@@ -9,6 +9,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include "operator_console/bar.h"
+#include "operator_console/base64.h"
 #include "operator_console/line_plot.h"
 #include "shoal/eval/statistics.h"
 #include "shoal/mapping/atomic_file.h"
@@ -186,18 +187,6 @@ std::optional<eval::Line> trend(const WorldResult& world, size_t matcher) {
     }
   }
   return eval::fitLine(x, y);
-}
-
-std::string base64(std::string_view bytes) {
-  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (size_t i = 0; i < bytes.size(); i += 3) {
-    uint32_t group = 0;
-    for (size_t k = 0; k < 3; ++k)
-      group = group << 8 | (i + k < bytes.size() ? static_cast<uint8_t>(bytes[i + k]) : 0u);
-    for (size_t k = 0; k < 4; ++k) text += i + k <= bytes.size() ? kDigits[group >> (18 - 6 * k) & 63] : '=';
-  }
-  return text;
 }
 
 constexpr std::string_view kHead = R"(<!doctype html>

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
 
 #include "fusion_node/process.h"
 #include "operator_console/asking.h"
@@ -46,6 +46,9 @@ void printRow(const Json& n) {
 }
 
 void print(const Json& a) {
+  if (const double silent_s = a.value("silent_s", 0.0); silent_s > 5) {
+    spdlog::warn("the node has heard nobody else for {:.0f} s", silent_s);
+  }
   fmt::print("mission {}: {} cells, {} labels, cells of {} m\n", a["mission_id"].get<int64_t>(),
              a["cells"].get<int64_t>(), a["labels"].get<int64_t>(), a["cell_size_m"].get<double>());
   fmt::print("state {}, map {}\n", a["digest"]["state"].get<std::string>(),

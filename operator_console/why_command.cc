@@ -102,6 +102,8 @@ int why(const WhyQuestion& q) {
   }
   printMembers(a);
   printDecision(a);
+  for (const Json& line : a.value("decided", Json::array()))
+    fmt::print("decided: {}\n", line.get<std::string>());
   printWords(a);
   return 0;
 }

@@ -70,6 +70,12 @@ size_t mostBytes(const std::string& channel, int64_t budget, size_t trailer) {
   return std::min(most, best - comms::wireSize(channel.size(), trailer));
 }
 
+int64_t wallMs() {
+  return std::chrono::duration_cast<std::chrono::milliseconds>(
+             std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
 int64_t wallUs() {
   return std::chrono::duration_cast<std::chrono::microseconds>(
              std::chrono::system_clock::now().time_since_epoch())
@@ -113,7 +119,8 @@ Agent::Agent(const AgentOptions& options, world::ObservationSource& source, comm
                  return piece.key.robot == options_.explorer.robot &&
                         sender_.queue().isWaiting(queueKey(piece.key, piece.part));
                }},
-              others_, sender_) {
+              others_, sender_),
+      silence_(options.budget, wallMs()) {
   bus_.countInto(sender_.stats());
   if (options.resume) resume();
 }
@@ -289,10 +296,13 @@ void Agent::passTimeUntil(int64_t to_us) {
 }
 
 void Agent::listen(int timeout_ms) {
-  bus_.receive(timeout_ms, [this](const comms::Packet& packet) {
+  const std::string own = "SHOAL_" + name_ + "_";
+  bus_.receive(timeout_ms, [&](const comms::Packet& packet) {
+    if (!packet.channel.starts_with(own)) silence_.heard(wallMs());
     others_.hear(packet, sender_.stats());
     repair_.hear(packet, clock_.now());
   });
+  if (const auto warning = silence_.check(wallMs())) spdlog::warn("{}", *warning);
   if (options_.fuse && phase_ != wire::Phase::kFlying) others_.refresh();
   for (; warned_of_missions_ < others_.otherMissions().size(); ++warned_of_missions_) {
     spdlog::warn("another mission is heard on this URL; ours is {}", options_.mission);

@@ -11,6 +11,7 @@
 
 #include "fusion_node/mission_state.h"
 #include "fusion_node/repair.h"
+#include "fusion_node/silence_alarm.h"
 #include "robot_agent/checkpoint.h"
 #include "shoal/comms/bus.h"
 #include "shoal/comms/mission_clock.h"
@@ -85,6 +86,7 @@ class Agent {
   std::vector<mapping::StampedPose> path_;
   wire::Phase phase_ = wire::Phase::kFlying;
   double total_ms_ = 0;
+  fusion_node::SilenceAlarm silence_;
   bool warned_of_twin_ = false;
   size_t warned_of_missions_ = 0;
 };

@@ -59,8 +59,13 @@ Json answer(const Witness& witness, const Json& question) {
     if (query == "why") return whyAnswer(view, witness.beliefs(), witness.matcher, question.at("label"));
     if (query == "node") return nodeAnswer(view, witness.beliefs(), question.at("node"));
     if (query == "edits") return editsAnswer(witness.beliefs());
+    if (query == "events") {
+      const auto seen = witness.events ? witness.events() : std::vector<MissionEvent>{};
+      return eventsAnswer(view, witness.beliefs(), seen);
+    }
     return {{"error",
-             "unknown question; questions are status, labels, map, pictures, at, area, why, node and edits"}};
+             "unknown question; questions are status, labels, map, pictures, at, area, why, node, edits and "
+             "events"}};
   } catch (const Json::exception& error) {
     return {{"error", error.what()}};
   } catch (const std::invalid_argument& error) {

@@ -6,6 +6,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "shoal/mapping/belief_store.h"
+#include "shoal/mapping/events_answer.h"
 #include "shoal/mapping/queries.h"
 #include "shoal/matching/matcher.h"
 
@@ -17,6 +18,8 @@ struct Witness {
   /// The state that the map was fused from. Called when a question needs it, for it may have to be read.
   std::function<const BeliefStore&()> beliefs;
   matching::MatcherOptions matcher;  ///< with which the map was fused
+  /// What it saw happen. None when empty: it keeps no history.
+  std::function<std::vector<MissionEvent>()> events = {};
 };
 
 /// Answers one question, {"query": NAME, ...}:
@@ -25,7 +28,7 @@ struct Witness {
 ///   area  label, and optionally min_m2, since_s, certainty
 ///   why   label           number as text, or name
 ///   node  node            "R03"
-///   edits
+///   edits | events
 /// Questions that change something are for makeEdit().
 /// A question is a peer's text: one that is unknown, incomplete or wrong is answered with {"error": ...}.
 nlohmann::ordered_json answer(const Witness& witness, const nlohmann::ordered_json& question);

@@ -8,6 +8,8 @@
 #include <optional>
 
 #include "shoal/mapping/area_answer.h"
+#include "shoal/mapping/edit_question.h"
+#include "shoal/mapping/judgement.h"
 #include "shoal/mapping/stacked_topics.h"
 #include "shoal/mapping/topic_similarities.h"
 
@@ -188,7 +190,10 @@ Json whyAnswer(const MissionView& view, const BeliefStore& beliefs, const matchi
   if (!asked) return {{"error", noSuchLabel(view.map, label)}};
   const LabelSummary& row = *std::ranges::find(view.map.labels, *asked, &LabelSummary::label);
 
-  const StackedTopics stacked = stack(beliefs);
+  const std::vector<Edit> edits = editsOf(beliefs);
+  std::vector<Standing> standings;
+  const Judgement judgement = judge(edits, beliefs, &standings);
+  const StackedTopics stacked = stack(beliefs, judgement.excluded);
   Case c{.stacked = stacked,
          .label = {},
          .asked = *asked,
@@ -214,7 +219,17 @@ Json whyAnswer(const MissionView& view, const BeliefStore& beliefs, const matchi
                  {"pairs", Json()},
                  {"margin", Json()},
                  {"closest", Json()},
-                 {"shared_words", sharedWords(c)}};
+                 {"shared_words", sharedWords(c)},
+                 {"decided", Json::array()}};
+  for (size_t e = 0; e < edits.size(); ++e) {
+    const auto* link = std::get_if<LinkEdit>(&edits[e].operation);
+    if (link == nullptr || standings[e] != Standing::kInForce) continue;
+    const bool concerns = std::ranges::any_of(c.members(), [&](size_t i) {
+      const Topic member{stacked.topics[i].robot, stacked.topics[i].id};
+      return member == Topic{link->a.robot, link->a.topic} || member == Topic{link->b.robot, link->b.topic};
+    });
+    if (concerns) answer["decided"].push_back(toText(edits[e].id) + ": " + sentenceOf(edits[e]));
+  }
   const double sigma = options.leastSimilarity();
   if (options.matcher == "clear") addEdges(answer, c, sigma);
   const Json& nearest = answer["nearest_label"];

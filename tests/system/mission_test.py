@@ -4,6 +4,7 @@
 
 Usage: mission_test.py BIN_DIR DOCS_DIR [unittest arguments], inside a network namespace of its own.
 """
+import base64
 import csv
 import glob
 import json
@@ -218,6 +219,30 @@ class Mission(unittest.TestCase):
         self.assertEqual(at["cells"], ask("at", first[0], first[1], "--log", log)["cells"])
         self.assertEqual(ask("at", "1e5", "1e5", "--run", self.a)["cells"], [])
 
+    def test_events_and_score_of_a_finished_mission(self):
+        events = ask("events", "--run", self.a)
+        check_schema("events", events)
+        self.assertEqual(events, ask("events", "--log", os.path.join(self.a, "mission.lcmlog")))
+        landed = {e["node"] for e in events["events"] if e["kind"] == "landed"}
+        self.assertEqual(landed, {"R00", "R01", "R02"})
+        scored = ask("score", "--run", self.a, "--world", "reef:tuning")
+        check_schema("score", scored)
+        told = ask("evaluate", "--run", self.a, "--world", "reef:tuning", "--matcher", "shoal")
+        self.assertAlmostEqual(scored["ami"], told["matchers"]["shoal"]["ami"], places=5)
+
+    def test_the_summary_page_says_what_happened_and_needs_nothing_else(self):
+        page = read(os.path.join(self.a, "summary.html")).decode()
+        for row in ask("labels", "--run", self.a)["labels"]:
+            self.assertIn(f">{row['label']}</td>", page)
+        self.assertIn("All nodes held one map", page)
+        self.assertIn("budgets kept in every window", page)
+        self.assertNotRegex(page, r'(src|href)="(?!data:)')
+        png = re.search(r'class="map"[^>]*base64,([^"]+)"', page).group(1)
+        self.assertEqual(base64.b64decode(png), read(os.path.join(self.a, "global_map.png")))
+        again = os.path.join(self.top, "again.html")
+        run(CONSOLE, "summary", "--run", self.a, "--out", again)
+        self.assertEqual(read(again).decode(), page)
+
     def test_area_why_node_and_diff_are_answered(self):
         log = os.path.join(self.a, "mission.lcmlog")
         label = max(ask("labels", "--run", self.a)["labels"], key=lambda row: row["cells"])
@@ -352,12 +377,12 @@ class Recordings(unittest.TestCase):
     def setUp(self):
         self.top = tempfile.mkdtemp(prefix="shoal_recordings_")
         self.addCleanup(shutil.rmtree, self.top)
-        self.out = os.path.join(self.top, "out")
+        self.a = os.path.join(self.top, "out")
 
     def fly(self, name, *more):
         world = os.path.join(os.environ["SHOAL_DATA"], name)
-        done = run(CONSOLE, "launch", "--world", world, "--out", self.out, *more)
-        with open(os.path.join(self.out, "summary.json"), encoding="utf-8") as file:
+        done = run(CONSOLE, "launch", "--world", world, "--out", self.a, *more)
+        with open(os.path.join(self.a, "summary.json"), encoding="utf-8") as file:
             summary = json.load(file)
         check_schema("summary", summary)
         return world, summary, done
@@ -369,22 +394,22 @@ class Recordings(unittest.TestCase):
         self.assertTrue(summary["converged"])
         self.assertGreater(summary["scores"]["scored"], 0.9 * summary["cells"])
         self.assertGreater(summary["coverage"], 0.8)
-        scores = ask("evaluate", "--run", self.out, "--world", world)
+        scores = ask("evaluate", "--run", self.a, "--world", world)
         check_schema("evaluate", scores)
         self.assertEqual(scores, summary["scores"])
-        self.assertEqual(len(read(os.path.join(self.out, "single", "poses.txt")).splitlines()), 32)
+        self.assertEqual(len(read(os.path.join(self.a, "single", "poses.txt")).splitlines()), 32)
 
     def test_an_unlabelled_recording_flies_without_scores(self):
         world, summary, done = self.fly("rgbd_redkitchen", "--observations", "10", "--robots", "1")
         self.assertEqual(summary["scores"], {})
         self.assertEqual(done.stdout, "")
-        heights = {line.split(",")[2] for line in read(os.path.join(self.out, "global_map.csv")).decode().splitlines()[1:]}
+        heights = {line.split(",")[2] for line in read(os.path.join(self.a, "global_map.csv")).decode().splitlines()[1:]}
         self.assertGreater(len(heights), 3, "cells are in three dimensions")
-        self.assertIn("no labels", run(CONSOLE, "evaluate", "--run", self.out, "--world", world).stdout)
+        self.assertIn("no labels", run(CONSOLE, "evaluate", "--run", self.a, "--world", world).stdout)
 
     def test_more_robots_than_were_recorded_are_refused(self):
         world = os.path.join(os.environ["SHOAL_DATA"], "uav_dubai_tile5")
-        done = run(CONSOLE, "launch", "--world", world, "--robots", "5", "--out", self.out, expect=2)
+        done = run(CONSOLE, "launch", "--world", world, "--robots", "5", "--out", self.a, expect=2)
         self.assertIn("recording of 4 robots", done.stderr)
 
 
@@ -445,6 +470,16 @@ class ByHand(unittest.TestCase):
         for edit in [("name", str(label), "brain coral"), ("exclude", "R02"), ("link", str(label), str(other)), ("undo",),
                      ("undo", "OPERATOR/2")]:
             check_schema("edit", ask(*edit, "--node", state))
+        events = ask("events", "--node", state)
+        check_schema("events", events)
+        kinds = [(e["kind"], e["node"]) for e in events["events"]]
+        for r in range(3):
+            self.assertIn(("joined", f"R0{r}"), kinds)
+            self.assertIn(("landed", f"R0{r}"), kinds)
+        self.assertEqual(kinds.count(("edit", "OPERATOR")), 5)
+        scored = ask("score", "--world", "reef:tuning", "--node", state)
+        check_schema("score", scored)
+        self.assertGreater(scored["scored"], 100)
         edits = ask("edits", "--node", state)
         check_schema("edits", edits)
         self.assertEqual([e["standing"] for e in edits["edits"]], ["in force", "undone", "undone", "in force", "in force"])

@@ -163,6 +163,16 @@ TEST_F(QuestionsTest, DecisionsAboutAFinishedMissionAreKeptBesideIt) {
   EXPECT_EQ(exported(run), map);
   EXPECT_EQ(exported(log), map);
   EXPECT_EQ(ask("edits" + run), ask("edits" + log));
+  // 20006 is a label of its own; linked to 4 it is part of it, and `why` says who wanted it so.
+  ask("link 4 20006" + run);
+  EXPECT_EQ(ask("labels" + log)["labels"].size(), 2u);
+  EXPECT_EQ(ask("why 4" + run)["decided"], Json::array({"CONSOLE/4: 4 and 20006 are the same"}));
+  EXPECT_EQ(ask("why 4" + run), ask("why 4" + log));
+  ask("undo" + run);
+  EXPECT_EQ(exported(run), map);
+  ask("unlink 4 10005" + log);  // they look the same
+  EXPECT_EQ(ask("labels" + run)["labels"].size(), 4u);
+  ask("undo" + log);
   expectExit(1, "undo CONSOLE/2" + run, "undone already");
   expectExit(1, "exclude R07" + log, "heard were R00 R01 R02");
   expectExit(1, "link 4 4" + run, "twice");
