@@ -40,10 +40,10 @@ int main(int argc, char** argv) {
   console::addDiffCommand(app, chosen);
   console::addNodeCommand(app, chosen);
   console::addEditCommands(app, chosen);
+  console::addServeCommand(app, chosen);
   console::addSpyCommand(app, chosen);
   console::addDoctorCommand(app, chosen);
   console::addCompletionCommand(app, chosen);
-  console::addUnbuiltCommands(app, chosen);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

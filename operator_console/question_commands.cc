@@ -9,12 +9,10 @@
 
 #include "operator_console/asking.h"
 #include "operator_console/command.h"
-#include "operator_console/ply.h"
+#include "operator_console/exports.h"
 #include "operator_console/render.h"
 #include "operator_console/terminal.h"
-#include "shoal/mapping/area_answer.h"
 #include "shoal/mapping/atomic_file.h"
-#include "shoal/mapping/map_files.h"
 
 namespace shoal::console {
 namespace {
@@ -74,23 +72,8 @@ void at(Question& q) {
 }
 
 void exportMap(Question& q) {
-  if (q.format == "geotiff") {
-    throw std::invalid_argument("--format geotiff is not built yet; csv, labels, geojson, ply and png are");
-  }
   const mapping::MissionView view = viewOf(whereOf(q.asking));
-  const world::Grid grid(view.cell_size_m);
-  std::string content;
-  if (q.format == "csv") {
-    content = mapping::globalMapCsv(view.map, grid);
-  } else if (q.format == "labels") {
-    content = mapping::labelsCsv(view.map, grid);
-  } else if (q.format == "geojson") {
-    content = mapping::areasGeoJson(mapping::areasOf(view)).dump() + "\n";
-  } else if (q.format == "ply") {
-    content = globalMapPly(view.map, grid);
-  } else {
-    content = encodePng(render(view.map, grid, fmt::format("mission {}", view.mission)));
-  }
+  const std::string content = exported(view, q.format);
   mapping::writeFileAtomically(q.out, content);
   if (q.asking.json) {
     std::cout << Json{{"format", q.format}, {"file", q.out}, {"cells", view.map.cells.size()}}.dump(2)
@@ -131,7 +114,7 @@ void addQuestionCommands(CLI::App& app, Action& chosen) {
       ->add_option("--format", export_question->format,
                    "csv (cells), labels (CSV of the legend), geojson (patches), ply (points) or png")
       ->required()
-      ->check(CLI::IsMember({"csv", "labels", "geojson", "ply", "geotiff", "png"}));
+      ->check(CLI::IsMember(exportFormats()));
   export_command->add_option("--out", export_question->out, "file to write")->required();
   export_command->footer(
       "Coordinates are metres of the mission frame in every format.\n\n"
