@@ -47,7 +47,7 @@ void addReproduceCommand(CLI::App& app, Action& chosen);
 void addTuneCommand(CLI::App& app, Action& chosen);
 void addVerifyCommand(CLI::App& app, Action& chosen);
 
-/// Subcommands that are not built yet: refused by name, whatever follows them.
-void addUnbuiltCommands(CLI::App& app, Action& chosen);
+/// serve: the mission as a page for browsers.
+void addServeCommand(CLI::App& app, Action& chosen);
 
 }  // namespace shoal::console

@@ -42,11 +42,11 @@ int main(int argc, char** argv) {
   console::addNodeCommand(app, chosen);
   console::addEditCommands(app, chosen);
   console::addScoreCommand(app, chosen);
+  console::addServeCommand(app, chosen);
   console::addSpyCommand(app, chosen);
   console::addDoctorCommand(app, chosen);
   console::addKeygenCommand(app, chosen);
   console::addCompletionCommand(app, chosen);
-  console::addUnbuiltCommands(app, chosen);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -10,13 +10,11 @@
 #include "fusion_node/picture_files.h"
 #include "operator_console/asking.h"
 #include "operator_console/command.h"
+#include "operator_console/exports.h"
 #include "operator_console/label_pictures.h"
-#include "operator_console/ply.h"
 #include "operator_console/render.h"
 #include "operator_console/terminal.h"
-#include "shoal/mapping/area_answer.h"
 #include "shoal/mapping/atomic_file.h"
-#include "shoal/mapping/map_files.h"
 
 namespace shoal::console {
 namespace {
@@ -77,13 +75,6 @@ void at(Question& q) {
 }
 
 void exportMap(Question& q) {
-  if (q.format == "geotiff") {
-    throw std::invalid_argument(
-        "--format geotiff is not built yet; csv, labels, geojson, ply, png and pictures are");
-  }
-  const mapping::MissionView view = viewOf(whereOf(q.asking));
-  const world::Grid grid(view.cell_size_m);
-  std::string content;
   if (q.format == "pictures") {
     const auto files = fusion_node::writeLabelPictures(q.out, picturesAt(whereOf(q.asking)));
     if (q.asking.json) {
@@ -93,18 +84,12 @@ void exportMap(Question& q) {
     }
     return;
   }
-  if (q.format == "csv") {
-    content = mapping::globalMapCsv(view.map, grid);
-  } else if (q.format == "labels") {
-    content = mapping::labelsCsv(view.map, grid);
-  } else if (q.format == "geojson") {
-    content = mapping::areasGeoJson(mapping::areasOf(view)).dump() + "\n";
-  } else if (q.format == "ply") {
-    content = globalMapPly(view.map, grid);
-  } else {
-    content = encodePng(render(view.map, grid, fmt::format("mission {}", view.mission), {},
-                               legendPictures(picturesAt(whereOf(q.asking)))));
-  }
+  const mapping::MissionView view = viewOf(whereOf(q.asking));
+  const std::string content =
+      q.format == "png" ? encodePng(render(view.map, world::Grid(view.cell_size_m),
+                                           fmt::format("mission {}", view.mission), {},
+                                           legendPictures(picturesAt(whereOf(q.asking)))))
+                        : exported(view, q.format);
   mapping::writeFileAtomically(q.out, content);
   if (q.asking.json) {
     std::cout << Json{{"format", q.format}, {"file", q.out}, {"cells", view.map.cells.size()}}.dump(2)
@@ -146,7 +131,11 @@ void addQuestionCommands(CLI::App& app, Action& chosen) {
                    "csv (cells), labels (CSV of the legend), geojson (patches), ply (points), png, or\n"
                    "pictures (a folder with what each label looks like)")
       ->required()
-      ->check(CLI::IsMember({"csv", "labels", "geojson", "ply", "geotiff", "png", "pictures"}));
+      ->check(CLI::IsMember([] {
+        std::vector<std::string> formats = exportFormats();
+        formats.push_back("pictures");
+        return formats;
+      }()));
   export_command->add_option("--out", export_question->out, "file to write")->required();
   export_command->footer(
       "Coordinates are metres of the mission frame in every format.\n\n"

@@ -134,7 +134,8 @@ void resume(Flags& flags, world::RobotId id) {
     const double passed_us =
         options.rate * static_cast<double>(std::max<int64_t>(now_us - checkpoint->wall_us, 0));
     options.start_us =
-        std::max({options.start_us, checkpoint->mission_us + std::llround(passed_us), int64_t{1}});
+        std::max({options.start_us, checkpoint->mission_us + static_cast<int64_t>(std::llround(passed_us)),
+                  int64_t{1}});
     options.resume = std::move(checkpoint);
   } else if (std::filesystem::exists(epoch_path)) {
     const int32_t before = std::stoi(mapping::readFile(epoch_path));

@@ -134,6 +134,8 @@ json fields(const std::vector<mapping::Piece>& pieces) {
   return j;
 }
 
+json fields(const mapping::Piece& piece) { return fields(std::vector{piece}); }
+
 template <typename Chunk>
 json chunkFields(const Chunk& chunk) {
   return {{"map_digest", chunk.map_digest}, {"chunk", chunk.chunk}, {"num_chunks", chunk.num_chunks}};

@@ -56,13 +56,6 @@ TEST(ConsoleTest, HelpIsNoMistakeAndNothingIs) {
   EXPECT_EQ(console("--log-level loud launch --world reef:sparse --out x").exit_code, 2);
 }
 
-TEST(ConsoleTest, RefusesByNameWhatIsNotBuiltYet) {
-  for (const std::string name : {"serve"}) {
-    expectRefusal(name, name + " is not built yet");
-    expectRefusal(name + " 7 --what ever", name + " is not built yet");
-  }
-}
-
 TEST(LaunchTest, NamesTheOptionThatIsWrong) {
   const std::string launch = "launch --out " + temporaryFolder() + "/run ";
   const std::string fly = launch + "--world reef:sparse ";

@@ -138,7 +138,8 @@ TEST_F(QuestionsTest, WhatIsWrongIsNamed) {
   expectExit(2, "diff 30 10" + log(), "the earlier to the later");
   expectExit(1, "diff 10 30 --node " + folder_, "a running node keeps no history");
   expectExit(2, "status --watch" + run(), "a finished run does not change");
-  expectExit(2, "export --format geotiff --out x" + run(), "--format geotiff is not built yet");
+  expectExit(2, "export --format gif --out x" + run(), "gif");
+  expectExit(2, "serve", "[--node,--run,--log] is required");
 }
 
 // What is decided about a run and about its recording: the same file, the same map; of another log a file

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "operator_console/serve/api.h"
+
+#include <charconv>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
+
+#include <spdlog/fmt/fmt.h>
+
+#include "operator_console/asking.h"
+#include "operator_console/exports.h"
+#include "operator_console/recorded_mission.h"
+#include "operator_console/serve/page_files.h"
+#include "shoal/mapping/area_answer.h"
+#include "shoal/mapping/diff_answer.h"
+#include "shoal/version.h"
+
+namespace shoal::console {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+HttpResponse json(const Json& value, int status = 200) {
+  return {.status = status, .body = value.dump(-1, ' ', false, Json::error_handler_t::replace)};
+}
+
+HttpResponse error(int status, const std::string& text) { return json({{"error", text}}, status); }
+
+const std::string* find(const HttpRequest& request, const char* key) {
+  const auto at = request.query.find(key);
+  return at == request.query.end() || at->second.empty() ? nullptr : &at->second;
+}
+
+std::string text(const HttpRequest& request, const char* key) {
+  const std::string* value = find(request, key);
+  if (value == nullptr) throw std::invalid_argument(std::string("the parameter \"") + key + "\" is missing");
+  return *value;
+}
+
+double number(const std::string& value, const char* key) {
+  double result = 0;
+  const auto [end, problem] = std::from_chars(value.data(), value.data() + value.size(), result);
+  if (problem != std::errc{} || end != value.data() + value.size() || !std::isfinite(result)) {
+    throw std::invalid_argument(std::string("\"") + key + "\" is a number; got \"" + value + "\"");
+  }
+  return result;
+}
+
+double number(const HttpRequest& request, const char* key) { return number(text(request, key), key); }
+
+}  // namespace
+
+Api::Api(Where where, MissionFeed& feed, Gate gate, uint64_t life)
+    : where_(std::move(where)), feed_(feed), gate_(std::move(gate)), life_(life) {}
+
+std::string Api::news() const {
+  Json news = feed_.report();
+  news.erase("times_s");
+  news["life"] = std::to_string(life_);
+  return news.dump();
+}
+
+HttpResponse Api::answer(const HttpRequest& request) {
+  if (const std::string refusal = gate_.refusal(request); !refusal.empty()) return error(403, refusal);
+  try {
+    if (request.method == "GET" || request.method == "HEAD") return get(request);
+    if (request.method == "POST" && request.path == "/api/edit") return edit(request);
+    return error(405, "GET everything, POST /api/edit");
+  } catch (const std::invalid_argument& problem) {
+    return error(400, problem.what());
+  } catch (const std::runtime_error& problem) {
+    return error(404, problem.what());
+  }
+}
+
+HttpResponse Api::get(const HttpRequest& request) {
+  const std::string& path = request.path;
+  if (const PageFile* file = pageFile(path)) return {.type = file->type, .body = std::string(file->content)};
+  if (path == "/api/map") return map(request);
+  if (path == "/api/stream") {
+    return {.type = "text/event-stream", .body = "retry: 1000\ndata: " + news() + "\n\n", .is_stream = true};
+  }
+  if (path == "/api/mission") {
+    Json mission = feed_.report();
+    mission["life"] = std::to_string(life_);
+    mission["version"] = std::string(version()) + " (" + commit() + ")";
+    mission["source"] = !where_.node.empty() ? "node" : !where_.run.empty() ? "run" : "log";
+    mission["place"] = where_.node + where_.run + where_.log;
+    mission["read_only"] = gate_.token.empty();
+    mission["formats"] = exportFormats();
+    return json(mission);
+  }
+  if (path == "/api/status" || path == "/api/labels") {
+    const std::string* time = find(request, "at");
+    const auto moment = time == nullptr ? feed_.now() : feed_.at(number(*time, "at"));
+    if (!moment) return error(503, "nothing is known of the mission yet");
+    return json(path == "/api/status" ? moment->status : moment->labels);
+  }
+  if (path == "/api/tracks" || path == "/api/traffic" || path == "/api/events") {
+    return json(feed_.chronicle(path.substr(5)));
+  }
+  if (path == "/api/at") {
+    return asked({{"query", "at"}, {"x", number(request, "x")}, {"y", number(request, "y")}});
+  }
+  if (path == "/api/area") return area(request);
+  if (path == "/api/why") return asked({{"query", "why"}, {"label", text(request, "label")}});
+  if (path == "/api/node") return asked({{"query", "node"}, {"node", text(request, "node")}});
+  if (path == "/api/edits") return asked({{"query", "edits"}});
+  if (path == "/api/diff") return diff(request);
+  if (path == "/api/export") {
+    const std::string format = text(request, "format");
+    HttpResponse file{.type = "application/octet-stream", .body = exported(viewOf(where_), format)};
+    file.file_name = exportFileName(format);
+    return file;
+  }
+  return error(404, "there is nothing of that name; /openapi.json says what there is");
+}
+
+HttpResponse Api::map(const HttpRequest& request) const {
+  const std::string* time = find(request, "at");
+  const auto moment = time == nullptr ? feed_.now() : feed_.at(number(*time, "at"));
+  if (!moment) return error(503, "nothing is known of the mission yet");
+  uint64_t since = 0;
+  const std::string* life = find(request, "life");
+  if (time == nullptr && life != nullptr && *life == std::to_string(life_) &&
+      find(request, "since") != nullptr) {
+    const double asked = number(request, "since");
+    if (asked >= static_cast<double>(moment->chain) && asked <= static_cast<double>(moment->sequence))
+      since = static_cast<uint64_t>(asked);
+  }
+  return {.type = "application/octet-stream",
+          .body = encodeTiles(moment->tiles, since, moment->cell_size_m, moment->base_s, moment->sequence,
+                              life_)};
+}
+
+HttpResponse Api::asked(const Json& question) const {
+  const Json answer = ask(where_, question);
+  return json(answer, answer.contains("error") ? 400 : 200);
+}
+
+HttpResponse Api::area(const HttpRequest& request) const {
+  Json question{{"query", "area"}, {"label", text(request, "label")}};
+  for (const char* key : {"min_m2", "since_s", "certainty"})
+    if (find(request, key) != nullptr) question[key] = number(request, key);
+  const std::string* format = find(request, "format");
+  if (format == nullptr || *format == "json") return asked(question);
+  const Json answer = ask(where_, question);
+  if (answer.contains("error")) return json(answer, 400);
+  if (*format == "csv") return {.type = "text/csv", .body = mapping::areaCsv(answer)};
+  if (*format == "geojson") return json(mapping::areasGeoJson(Json::array({answer})));
+  throw std::invalid_argument("\"" + *format + "\" is no format of patches; json, csv and geojson are");
+}
+
+HttpResponse Api::diff(const HttpRequest& request) const {
+  const double from_s = number(request, "from"), until_s = number(request, "until");
+  if (!(0 <= from_s && from_s <= until_s && until_s <= 4e12)) {
+    throw std::invalid_argument("diff goes from the earlier to the later mission time, seconds");
+  }
+  const auto viewAt = [log = recordingOf(where_), matcher = matcherOf(where_)](double time_s) {
+    return readRecording(log, matcher, {}, world::Timestamp{std::llround(time_s * 1e6)}).state.view();
+  };
+  return json(mapping::diffAnswer(viewAt(from_s), from_s, viewAt(until_s), until_s));
+}
+
+HttpResponse Api::edit(const HttpRequest& request) {
+  if (gate_.token.empty()) return error(403, "this console is read-only");
+  if (!gate_.mayWrite(request))
+    return error(401, "show the token that serve printed: Authorization: Bearer TOKEN");
+  const Json question = Json::parse(request.body, nullptr, false);
+  if (!question.is_object() || !question.contains("edit")) {
+    throw std::invalid_argument(
+        R"(an edit is a JSON object: {"edit": "name", "label": "10004", "text": "sand"})");
+  }
+  const HttpResponse answer = asked(question);
+  if (answer.status == 200) feed_.lookAgain();
+  return answer;
+}
+
+}  // namespace shoal::console

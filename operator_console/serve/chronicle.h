@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "shoal/mapping/queries.h"
+
+namespace shoal::console {
+
+/// What happened in a mission, in order: where robots were, what they sent, and what is worth telling.
+/// Bounded: tracks and traffic get coarser as they grow, events stop at a number and say so.
+class Chronicle {
+ public:
+  /// A node as its last heartbeat told it.
+  /// @param class_bytes  what it has sent by class of traffic, when that is known; else all counts as "sent".
+  void hear(const mapping::NodeStatus& node, const std::map<std::string, int64_t>& class_bytes = {});
+  /// The legend as it is at a time: new labels and new names are events.
+  void hearLabels(double time_s, const nlohmann::ordered_json& labels);
+  /// Something else worth telling. @param kind  "joined", "landed", "label", "alarm", ...
+  void tell(double time_s, const std::string& kind, const std::string& text);
+
+  /// {"tracks": [{"robot", "points": [[t, x, y, z], ...]}]}
+  nlohmann::ordered_json tracks() const;
+  /// {"bin_s", "classes": [..], "nodes": [{"node", "budget", "bins": [[t, bytes by class...], ...]}]}
+  nlohmann::ordered_json traffic() const;
+  /// {"events": [{"time_s", "kind", "text"}]}
+  nlohmann::ordered_json events() const;
+
+ private:
+  struct Point {
+    double t, x, y, z;
+  };
+  struct Life {
+    std::string phase, agreement;
+    double heard_s = 0;
+    int64_t conflicts = 0, rejected = 0;
+    int64_t budget = 0;
+    std::vector<Point> points;
+    size_t stride = 1, skipped = 0;
+    std::map<std::string, int64_t> sent;                     // last told, by class
+    std::map<int64_t, std::map<std::string, int64_t>> bins;  // by time / bin
+  };
+  struct Event {
+    double time_s;
+    std::string kind, text;
+  };
+
+  void coarsen();
+
+  std::map<std::string, Life> lives_;
+  std::map<int64_t, std::string> labels_;
+  std::vector<Event> events_;
+  double bin_s_ = 1;
+};
+
+}  // namespace shoal::console

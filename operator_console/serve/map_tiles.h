@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "shoal/mapping/global_map.h"
+
+namespace shoal::console {
+
+inline constexpr int32_t kTileSide = 32;  ///< columns of cells along a tile's edge
+inline constexpr size_t kTileColumns = size_t{kTileSide} * kTileSide;
+
+/// What a square of 32 x 32 columns looks like from above: of each column its highest cell. Column (i, j) of
+/// the tile is at j x 32 + i, i to the east, j to the north.
+struct Tile {
+  std::array<int32_t, kTileColumns> label;      ///< -1: nobody has been there
+  std::array<int32_t, kTileColumns> seen;       ///< tenths of a second of mission time after the map's base
+  std::array<int16_t, kTileColumns> robot;      ///< number of the robot that saw it last
+  std::array<int16_t, kTileColumns> height;     ///< z index, clamped
+  std::array<uint8_t, kTileColumns> certainty;  ///< [0, 1] in steps of 1/255
+
+  static Tile empty();
+  bool operator==(const Tile&) const = default;
+};
+
+struct VersionedTile {
+  uint64_t sequence = 0;  ///< number of the map in which it became what it is
+  std::shared_ptr<const Tile> tile;
+};
+
+/// By tile index: floor(cell index / 32), x then y.
+using TileMap = std::map<std::pair<int32_t, int32_t>, VersionedTile>;
+
+/// The tiles of a map. Those that are as in `before` are shared with it and keep their sequence; those that
+/// are gone stay as empty ones, so that whoever has `before` can be told.
+/// @param base_s  mission time that `seen` counts from.
+/// Cost: O(cells).
+TileMap tilesOf(const mapping::GlobalMap& map, double base_s, uint64_t sequence, const TileMap& before);
+
+/// Tiles newer than `since` as bytes, little-endian:
+///   "SHT1", u32 number of tiles, f64 cell size (m), f64 base (s), u64 sequence, u64 since, u64 life, then a
+///   tile: i32 x, i32 y, label i32[1024], seen i32[1024], robot i16[1024], height i16[1024], certainty
+///   u8[1024]
+std::string encodeTiles(const TileMap& tiles, uint64_t since, double cell_size_m, double base_s,
+                        uint64_t sequence, uint64_t life);
+
+}  // namespace shoal::console

@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "operator_console/serve/mission_feed.h"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <filesystem>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+#include "fusion_node/query_server.h"
+#include "operator_console/recorded_mission.h"
+#include "operator_console/render.h"
+#include "shoal/comms/log_reader.h"
+#include "shoal/mapping/edits_file.h"
+#include "shoal/wire/heartbeat_codec.h"
+
+namespace shoal::console {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Clock = std::chrono::steady_clock;
+
+constexpr auto kAskEvery = std::chrono::milliseconds(200);
+constexpr int kLeisure = 4;  // a map is asked for again after 4 times what it took: nodes have other work
+constexpr size_t kMaxMoments = 64;      // of a live mission
+constexpr size_t kHistoryMoments = 32;  // of a recording
+
+double timeOf(const mapping::MissionView& view) {
+  double time_s = 0;
+  for (const mapping::NodeStatus& node : view.nodes) time_s = std::max(time_s, node.heard_s);
+  return time_s;
+}
+
+Json coloredLabels(const mapping::MissionView& view) {
+  Json answer = mapping::labelsAnswer(view);
+  for (Json& row : answer["labels"]) {
+    const Rgb c = colorOf(world::GlobalLabel{row["label"].get<int32_t>()});
+    row["color"] = fmt::format("#{:02x}{:02x}{:02x}", c[0], c[1], c[2]);
+  }
+  return answer;
+}
+
+// First and last mission time of the heartbeats of a recording.
+std::pair<double, double> spanOf(const std::string& path) {
+  double first = 0, last = 0;
+  bool any = false;
+  comms::LogReader log(path);
+  while (const auto event = log.next()) {
+    const auto header = wire::peek(event->packet.bytes);
+    if (!header || header->kind != wire::MessageKind::kHeartbeat) continue;
+    const double t = header->time.seconds();
+    first = any ? std::min(first, t) : t;
+    last = any ? std::max(last, t) : t;
+    any = true;
+  }
+  return {first, last};
+}
+
+std::string recordingOrNone(const Where& where) {
+  if (!where.log.empty()) return where.log;
+  const std::string beside = where.run + "/mission.lcmlog";
+  return std::filesystem::exists(beside) ? beside : std::string();
+}
+
+}  // namespace
+
+MissionFeed::MissionFeed(Where where, OnChange on_change)
+    : where_(std::move(where)), on_change_(std::move(on_change)), thread_([this] { run(); }) {}
+
+MissionFeed::~MissionFeed() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  wake_.notify_all();
+  thread_.join();
+}
+
+std::shared_ptr<const Moment> MissionFeed::now() const {
+  const std::lock_guard lock(mutex_);
+  return moments_.empty() ? nullptr : moments_.back();
+}
+
+std::shared_ptr<const Moment> MissionFeed::at(double time_s) const {
+  const std::lock_guard lock(mutex_);
+  if (moments_.empty()) return nullptr;
+  const auto after = std::ranges::upper_bound(moments_, time_s, {}, [](const auto& m) { return m->time_s; });
+  return after == moments_.begin() ? moments_.front() : *(after - 1);
+}
+
+Json MissionFeed::report() const {
+  const std::lock_guard lock(mutex_);
+  Json times = Json::array();
+  for (const auto& moment : moments_) times.push_back(std::round(moment->time_s * 1e3) / 1e3);
+  return {{"phase", phase_},
+          {"problem", problem_},
+          {"sequence", moments_.empty() ? 0 : moments_.back()->sequence},
+          {"time_s", moments_.empty() ? 0.0 : std::round(moments_.back()->time_s * 1e3) / 1e3},
+          {"times_s", std::move(times)}};
+}
+
+Json MissionFeed::chronicle(const std::string& what) const {
+  const std::lock_guard lock(mutex_);
+  if (what == "tracks") return chronicle_.tracks();
+  if (what == "traffic") return chronicle_.traffic();
+  return chronicle_.events();
+}
+
+void MissionFeed::lookAgain() {
+  {
+    const std::lock_guard lock(mutex_);
+    stale_ = true;
+  }
+  wake_.notify_all();
+}
+
+void MissionFeed::setPhase(const std::string& phase, const std::string& problem) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (phase_ == phase && problem_ == problem) return;
+    phase_ = phase;
+    problem_ = problem;
+  }
+  if (!problem.empty()) spdlog::warn("{}", problem);
+  on_change_();
+}
+
+std::shared_ptr<Moment> MissionFeed::momentOf(const mapping::MissionView& view, double time_s,
+                                              const Moment* before) {
+  if (!base_s_ && !view.map.cells.empty()) {
+    const auto oldest = std::ranges::min_element(view.map.cells, {}, &mapping::GlobalCell::seen);
+    base_s_ = std::floor(oldest->seen.seconds());
+  }
+  auto moment = std::make_shared<Moment>();
+  moment->sequence = ++sequence_;
+  moment->chain = before != nullptr ? before->chain : moment->sequence;
+  moment->time_s = time_s;
+  moment->cell_size_m = view.cell_size_m;
+  moment->base_s = base_s_.value_or(0);
+  moment->tiles =
+      tilesOf(view.map, moment->base_s, moment->sequence, before != nullptr ? before->tiles : TileMap());
+  moment->status = mapping::statusAnswer(view);
+  moment->labels = coloredLabels(view);
+  return moment;
+}
+
+// Of a live mission: the newest joins the others, every second of which goes when there are many.
+void MissionFeed::add(std::shared_ptr<const Moment> moment) {
+  const std::lock_guard lock(mutex_);
+  if (moments_.size() >= kMaxMoments) {
+    std::vector<std::shared_ptr<const Moment>> kept;
+    for (size_t i = 0; i < moments_.size(); i += 2) kept.push_back(moments_[i]);
+    moments_ = std::move(kept);
+  }
+  moments_.push_back(std::move(moment));
+}
+
+void MissionFeed::run() {
+  for (;;) {
+    try {
+      if (!where_.node.empty()) {
+        watchNode();
+      } else {
+        lookAtFiles();
+      }
+    } catch (const std::exception& error) {
+      setPhase("lost", error.what());
+    }
+    std::unique_lock lock(mutex_);
+    const auto over = [this] { return stopping_ || (stale_ && where_.node.empty()); };
+    wake_.wait_for(lock, std::chrono::seconds(1), over);
+    if (stopping_) return;
+  }
+}
+
+// Until it is lost: throws then.
+void MissionFeed::watchNode() {
+  std::string digest;
+  Clock::time_point next_map;
+  for (;;) {
+    {
+      std::unique_lock lock(mutex_);
+      if (wake_.wait_for(lock, kAskEvery, [this] { return stopping_ || std::exchange(stale_, false); }) &&
+          stopping_)
+        return;
+    }
+    const Json status = fusion_node::askNode(where_.node, {{"query", "status"}});
+    if (status.contains("error")) throw std::runtime_error(status.at("error").get<std::string>());
+    double time_s = 0;
+    {
+      const std::lock_guard lock(mutex_);
+      for (const Json& row : status.at("nodes")) {
+        const mapping::NodeStatus node = mapping::nodeFromJson(row);
+        time_s = std::max(time_s, node.heard_s);
+        chronicle_.hear(node);
+      }
+    }
+    const auto last = now();
+    const std::string is = status.at("digest").dump() + status.at("labels").dump();
+    if (is != digest && Clock::now() >= next_map) {
+      const auto begun = Clock::now();
+      const mapping::MissionView view = viewOf(where_);
+      auto moment = momentOf(view, std::max(time_s, timeOf(view)), last.get());
+      digest = is;
+      next_map = Clock::now() + (Clock::now() - begun) * kLeisure;
+      {
+        const std::lock_guard lock(mutex_);
+        chronicle_.hearLabels(moment->time_s, moment->labels);
+      }
+      add(std::move(moment));
+      setPhase("live");
+      on_change_();
+    } else if (last && status != last->status) {  // the map is as it was; robots have moved
+      auto moment = std::make_shared<Moment>(*last);
+      moment->status = status;
+      moment->time_s = std::max(time_s, last->time_s);
+      {
+        const std::lock_guard lock(mutex_);
+        moments_.back() = std::move(moment);
+      }
+      setPhase("live");
+      on_change_();
+    }
+  }
+}
+
+void MissionFeed::lookAtFiles() {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!std::exchange(stale_, false)) return;
+  }
+  if (!where_.run.empty()) {
+    const mapping::MissionView view = viewOfRun(where_.run);
+    const auto last = now();
+    auto moment = momentOf(view, timeOf(view), last.get());
+    {
+      const std::lock_guard lock(mutex_);
+      moments_ = {std::move(moment)};
+      chronicle_ = {};
+      for (const mapping::NodeStatus& node : view.nodes) chronicle_.hear(node);
+      chronicle_.hearLabels(moments_.back()->time_s, moments_.back()->labels);
+    }
+    on_change_();
+  }
+  if (recordingOrNone(where_).empty()) return setPhase("whole");
+  readHistory();
+  setPhase("whole");
+}
+
+// Reads the recording from its beginning, with what was decided since, and keeps its map at even times.
+void MissionFeed::readHistory() {
+  const std::string path = recordingOrNone(where_);
+  const auto [first_s, last_s] = spanOf(path);
+  const double step_s = std::max((last_s - first_s) / static_cast<double>(kHistoryMoments), 1e-3);
+  const matching::MatcherOptions matcher = matcherOf(where_);
+  std::vector<std::shared_ptr<const Moment>> moments;
+  Chronicle chronicle;
+  std::vector<mapping::Edit> edits;
+  const auto keep = [&](const fusion_node::MissionState& heard, double time_s) {
+    fusion_node::MissionState state = heard;
+    for (const mapping::Edit& edit : edits) state.apply(mapping::pieceOf(edit));
+    state.refreshMap();
+    moments.push_back(momentOf(state.view(), time_s, moments.empty() ? nullptr : moments.back().get()));
+    chronicle.hearLabels(time_s, moments.back()->labels);
+  };
+  bool is_first = true;
+  double due_s = first_s + step_s;
+  const auto on_message = [&](const comms::ChannelName& channel, const wire::Header& header,
+                              const comms::Packet&, const fusion_node::MissionState& state) {
+    if (std::exchange(is_first, false)) edits = mapping::readEdits(editsPathOf(where_), header.mission);
+    if (header.kind != wire::MessageKind::kHeartbeat) return;
+    const wire::Heartbeat& heartbeat = state.heartbeats().at(channel.node);
+    std::map<std::string, int64_t> sent;
+    for (size_t i = 0; i < wire::Heartbeat::kNumClasses && i < comms::kNumTrafficClasses; ++i)
+      sent[std::string(comms::kTrafficClassNames[i])] = heartbeat.class_bytes[i];
+    chronicle.hear(fusion_node::statusOf(channel.node, heartbeat, false, {}), sent);
+    if (header.time.seconds() < due_s || header.time.seconds() >= last_s) return;
+    keep(state, header.time.seconds());
+    due_s = header.time.seconds() + step_s;
+  };
+  const RecordedMission recorded = readRecording(path, matcher, on_message);
+  keep(recorded.state, last_s);
+  {
+    const std::lock_guard lock(mutex_);
+    moments_ = std::move(moments);
+    chronicle_ = std::move(chronicle);
+  }
+  on_change_();
+}
+
+}  // namespace shoal::console

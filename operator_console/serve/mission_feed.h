@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "operator_console/mission_sources.h"
+#include "operator_console/serve/chronicle.h"
+#include "operator_console/serve/map_tiles.h"
+
+namespace shoal::console {
+
+/// The map as it was at one time, ready to be handed out.
+struct Moment {
+  uint64_t sequence = 0;
+  uint64_t chain = 0;  ///< the first map of which this one can be told as a difference
+  double time_s = 0;   ///< mission time
+  double cell_size_m = 1, base_s = 0;
+  TileMap tiles;
+  nlohmann::ordered_json status, labels;  ///< as the questions of these names are answered
+};
+
+/// Keeps looking at a mission from a thread of its own: asks a running node, or reads files once and again
+/// when something was decided. Pages read what it has found, and never make a node work.
+class MissionFeed {
+ public:
+  using OnChange = std::function<void()>;
+
+  /// @param on_change  Called from the feed's thread when there is something new.
+  MissionFeed(Where where, OnChange on_change);
+  ~MissionFeed();
+  MissionFeed(const MissionFeed&) = delete;
+  MissionFeed& operator=(const MissionFeed&) = delete;
+
+  /// The newest; nullptr before the first.
+  std::shared_ptr<const Moment> now() const;
+  /// The last one not after that mission time; the first when there is none; nullptr before the first.
+  std::shared_ptr<const Moment> at(double time_s) const;
+
+  /// {"phase": "live"|"lost"|"reading"|"whole", "problem", "sequence", "time_s", "times_s": [..]}
+  nlohmann::ordered_json report() const;
+  /// Tracks, traffic and events up to now.
+  nlohmann::ordered_json chronicle(const std::string& what) const;
+
+  /// Something was decided: look again, now.
+  void lookAgain();
+
+ private:
+  void run();
+  void watchNode();
+  void lookAtFiles();
+  void readHistory();
+  std::shared_ptr<Moment> momentOf(const mapping::MissionView& view, double time_s, const Moment* before);
+  void add(std::shared_ptr<const Moment> moment);
+  void setPhase(const std::string& phase, const std::string& problem = {});
+
+  const Where where_;
+  const OnChange on_change_;
+  mutable std::mutex mutex_;
+  std::condition_variable wake_;
+  bool stopping_ = false, stale_ = true;
+  std::string phase_ = "reading", problem_;
+  uint64_t sequence_ = 0;
+  std::optional<double> base_s_;
+  std::vector<std::shared_ptr<const Moment>> moments_;  // by time
+  Chronicle chronicle_;
+  std::thread thread_;
+};
+
+}  // namespace shoal::console

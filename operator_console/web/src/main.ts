@@ -1,0 +1,350 @@
+// SPDX-License-Identifier: BSD-3-Clause
+import { ask, askBytes, decide, hasToken, takeToken } from "./api";
+import type { CellHistory, Happening, Label, Mission, Node, Status, Track, Traffic, Why } from "./api";
+import { classColor, rampCss, robotColor } from "./colors";
+import { area, byId, el, seconds } from "./dom";
+import { drawLink, rateText } from "./link_plot";
+import { isSilent, LAYERS, MapView, type Layer } from "./map_view";
+import { decodeTiles } from "./tiles";
+
+takeToken();
+const map = new MapView(byId<HTMLCanvasElement>("map"));
+let mission: Mission | null = null, status: Status | null = null;
+let labels: Label[] = [], traffic: Traffic | null = null, events: Happening[] = [];
+let past: number | null = null; // mission time that is looked at; null: the newest
+let linking: number | null = null; // the label that waits for another to be linked with
+let fitted = false, playing = 0;
+const LAYER_TEXT: Record<Layer, string> = { label: "Label", certainty: "Certainty", age: "Age", robot: "Robot", coverage: "Coverage" };
+
+const nameOf = (label: number): string => labels.find((l) => l.label === label)?.name || String(label);
+const colorOf = (label: number): string => labels.find((l) => l.label === label)?.color ?? "#999";
+const mayWrite = (): boolean => mission !== null && !mission.read_only && hasToken();
+
+// ---------- what is fetched
+
+let fetching = false, again = false;
+async function refresh(): Promise<void> {
+  if (fetching) { again = true; return; }
+  fetching = true;
+  try {
+    mission = await ask<Mission>("/api/mission");
+    const at = past === null ? "" : `?at=${past}`;
+    if (mission.sequence > 0) {
+      const since = past === null && map.life === mission.life && !map.isEmpty ? `?since=${map.sequence}&life=${map.life}` : "";
+      const begun = performance.now();
+      const [bytes, newStatus, newLabels, tracks, newTraffic, happened] = await Promise.all([
+        askBytes("/api/map" + (past === null ? since : at)), ask<Status>("/api/status" + at), ask<{ labels: Label[] }>("/api/labels" + at),
+        ask<{ tracks: Track[] }>("/api/tracks"), ask<Traffic>("/api/traffic"), ask<{ events: Happening[] }>("/api/events")]);
+      status = newStatus; traffic = newTraffic; events = happened.events;
+      labels = newLabels.labels.sort((a, b) => b.area_m2 - a.area_m2);
+      map.nodes = status.nodes; map.tracks = tracks.tracks; map.tracksUntil = past ?? Infinity;
+      map.setLabels(labels);
+      map.take(decodeTiles(bytes));
+      (window as unknown as Record<string, unknown>).shoal = { map, bytes: bytes.byteLength, fetchMs: performance.now() - begun };
+      if (past !== null) map.sequence = 0, map.life = ""; // the next newest map comes whole
+      if (!fitted && !map.isEmpty) { fitted = true; if (!restoreView()) map.fit(); }
+    }
+    show();
+  } catch (problem) {
+    byId("phase").textContent = "no answer"; byId("phase").className = "bad";
+    byId("phase").title = String(problem);
+  } finally {
+    fetching = false;
+    if (again) { again = false; void refresh(); }
+  }
+}
+
+function listen(): void {
+  const stream = new EventSource("/api/stream");
+  stream.onmessage = (message) => {
+    const news = JSON.parse(message.data);
+    if (past !== null && mission && news.life === mission.life && news.phase === mission.phase) return;
+    void refresh();
+  };
+  stream.onerror = () => {
+    byId("phase").textContent = "server gone, trying again"; byId("phase").className = "bad";
+    if (stream.readyState === EventSource.CLOSED) setTimeout(listen, 2000); // refused: others listen
+  };
+}
+document.addEventListener("visibilitychange", () => { if (!document.hidden) void refresh(); });
+
+// ---------- what is shown
+
+function show(): void {
+  if (!mission) return;
+  const phase = byId("phase");
+  const words: Record<string, string> = { live: "live", whole: mission.source === "run" ? "finished run" : "recording", reading: "reading the recording…", lost: "node not answering" };
+  phase.textContent = past === null ? words[mission.phase] : "as it was"; phase.title = mission.problem;
+  phase.className = mission.phase === "lost" ? "bad" : past !== null ? "past" : mission.phase === "live" ? "good" : "";
+  byId("mission").textContent = status ? `mission ${status.mission_id}` : "";
+  byId("mission").title = `${mission.place} · console ${mission.version}`;
+  byId("counts").textContent = status ? `${status.cells.toLocaleString("en")} cells · ${labels.length} labels · ${area(labels.reduce((s, l) => s + l.area_m2, 0))}` : "";
+  byId("empty").hidden = !map.isEmpty;
+  byId("undo").hidden = !mayWrite();
+  const choice = byId<HTMLSelectElement>("export");
+  if (choice.options.length === 1) for (const format of mission.formats) choice.add(new Option(format, format));
+  showLegend(); showRobots(); showLink(); showEvents(); showTime(); showRamp();
+}
+
+function showLegend(): void {
+  if (document.activeElement?.closest("#legend input")) return; // somebody is typing a name
+  const total = labels.reduce((s, l) => s + l.area_m2, 0) || 1;
+  byId("legend").replaceChildren(...labels.map((l) => el("div", {
+    class: "row label" + (map.selected === l.label ? " chosen" : ""), tabindex: "0", title: `label ${l.label}, ${l.cells} cells`,
+    click: () => choose(l.label), dblclick: () => nameLabel(l.label),
+    keydown: (e) => { if ((e as KeyboardEvent).key === "Enter" && e.target === e.currentTarget) choose(l.label); },
+  },
+    l.picture ? el("img", { src: l.picture, alt: "", class: "example" }) : null,
+    el("span", { class: "swatch", style: `background:${l.color}` }),
+    el("span", { class: "name", "data-label": String(l.label) }, l.name || `label ${l.label}`),
+    el("span", { class: "bar" }, el("i", { style: `width:${(100 * l.area_m2) / total}%;background:${l.color}` })),
+    el("span", { class: "number" }, area(l.area_m2)),
+    el("span", { class: "number dim" }, l.robots.length === 1 ? l.robots[0] : `${l.robots.length} robots`))));
+}
+
+function showRobots(): void {
+  if (!status) return;
+  const newest = Math.max(...status.nodes.map((n) => n.heard_s), 0);
+  const state = (n: Node): [string, string] => n.agreement === "other" ? ["other map!", "bad"] : isSilent(n, newest) ? [`silent since ${seconds(n.heard_s)}`, "bad"]
+    : n.phase === "node" ? ["node", ""] : n.phase !== "flying" ? [n.heard_whole || mission!.source !== "node" ? "landed" : "landed, part missing", ""] : ["flying", "good"];
+  byId("robots").replaceChildren(...status.nodes.map((n) => {
+    const number = n.name.startsWith("R") ? Number(n.name.slice(1)) : null;
+    const [text, kind] = state(n);
+    const used = n.budget > 0 && n.heard_s > 0 ? n.bytes_sent / (n.budget * n.heard_s) : 0;
+    return el("div", { class: "row robot" + (number !== null && map.onlyRobot === number ? " chosen" : ""), tabindex: "0",
+                       title: number === null ? n.name : "Click: only what this robot saw last",
+                       click: () => { if (number !== null) { map.onlyRobot = map.onlyRobot === number ? null : number; map.repaint(); show(); } } },
+      el("span", { class: "dot", style: `background:${number === null ? "#1d2733" : kind === "bad" ? "#8a8f96" : robotColor(number)}` }),
+      el("span", { class: "name" }, n.name), el("span", { class: "state " + kind }, text),
+      el("span", { class: "number dim" }, number === null ? "" : `${n.observation + 1}${n.num_observations ? "/" + n.num_observations : ""} images`),
+      el("span", { class: "number", title: `${n.bytes_sent} bytes sent, ${n.queue_bytes} waiting` }, n.budget > 0 ? `${(100 * used).toFixed(0)} % of ${rateText(n.budget)}` : `${(n.bytes_sent / 1000).toFixed(1)} kB`),
+      number !== null && mayWrite() && past === null ? el("button", { class: "small", title: "Make the map as if it had never been there", click: (e) => { e.stopPropagation(); if (confirm(`Make the map as if ${n.name} had never been there? Undo brings it back.`)) void decided({ edit: "exclude", robot: n.name }); } }, "exclude") : null);
+  }));
+}
+
+function showLink(): void {
+  if (!traffic) return;
+  const only = map.onlyRobot === null ? null : status?.nodes.find((n) => n.name.startsWith("R") && Number(n.name.slice(1)) === map.onlyRobot)?.name ?? null;
+  byId("linkwhat").textContent = only ? `bytes/s, ${only}` : "bytes/s, everybody together";
+  drawLink(byId<HTMLCanvasElement>("link"), traffic, only, past ?? Infinity);
+  byId("linkkey").replaceChildren(...traffic.classes.map((name) => el("span", {}, el("i", { style: `background:${classColor(name)}` }), name)));
+}
+
+function showEvents(): void {
+  const until = past ?? Infinity;
+  byId("events").replaceChildren(...events.filter((e) => e.time_s <= until).slice(-200).reverse().map((e) =>
+    el("div", { class: "row event " + e.kind, tabindex: "0", title: "Click: the map at that time", click: () => travel(e.time_s) }, el("span", { class: "dim when" }, seconds(e.time_s)), el("span", {}, e.text))));
+}
+
+function showTime(): void {
+  const times = mission!.times_s, slider = byId<HTMLInputElement>("time");
+  const some = times.length > 1;
+  slider.disabled = !some; byId<HTMLButtonElement>("play").disabled = !some;
+  slider.min = String(times[0] ?? 0); slider.max = String(times[times.length - 1] ?? 1);
+  if (document.activeElement !== slider || past === null) slider.value = String(past ?? slider.max);
+  byId("clock").textContent = some ? `${seconds(past ?? mission!.time_s)} of ${seconds(mission!.time_s)}` : mission!.phase === "whole" ? "no recording: only the end is known" : seconds(mission!.time_s);
+  byId("now").hidden = past === null;
+}
+
+function showRamp(): void {
+  const box = byId("ramp");
+  box.hidden = map.layer !== "certainty" && map.layer !== "age";
+  if (box.hidden) return;
+  const [low, high] = map.layer === "certainty" ? ["unsure", "sure"] : [`${seconds(map.ageRange()[1])} ago`, "just seen"];
+  box.replaceChildren(el("span", {}, low), el("i", { style: `background:${rampCss}` }), el("span", {}, high));
+}
+
+function setLayer(layer: Layer): void {
+  map.layer = layer;
+  for (const button of byId("layers").children) button.setAttribute("aria-checked", String((button as HTMLElement).dataset.layer === layer));
+  map.repaint(); showRamp(); remember();
+}
+
+// ---------- asking and deciding
+
+function toast(text: string, undo = false): void {
+  const box = byId("toast");
+  box.replaceChildren(text, ...(undo ? [" ", el("button", { click: () => void takeBack() }, "Undo")] : []));
+  box.hidden = false;
+  clearTimeout(Number(box.dataset.timer));
+  box.dataset.timer = String(setTimeout(() => (box.hidden = true), 8000));
+}
+
+async function decided(edit: Record<string, string>): Promise<void> {
+  try {
+    toast((await decide(edit)).says, edit.edit !== "undo");
+    await refresh();
+  } catch (problem) { toast((problem as Error).message); }
+}
+const takeBack = (): Promise<void> => decided({ edit: "undo" });
+
+function choose(label: number | null): void {
+  if (linking !== null && label !== null && label !== linking) {
+    const first = linking;
+    linking = null;
+    byId("map").classList.remove("linking");
+    void decided({ edit: "link", a: String(first), b: String(label) }).then(() => choose(first));
+    return;
+  }
+  map.selected = label;
+  if (label === null) byId("inspector").hidden = true; else void inspect(label);
+  map.repaint(); show(); remember();
+}
+
+async function inspect(label: number, cell?: HTMLElement): Promise<void> {
+  const box = byId("inspector"), l = labels.find((x) => x.label === label);
+  box.hidden = false;
+  const buttons = el("div", { class: "buttons" });
+  if (mayWrite() && past === null) buttons.append(
+    el("button", { click: () => nameLabel(label) }, l?.name ? "Rename" : "Name"),
+    el("button", { title: "Say that another label is the same: click it next", click: () => { linking = label; byId("map").classList.add("linking"); toast(`Now click the label that is the same as ${nameOf(label)}.`); } }, "Same as…"));
+  buttons.append(el("a", { href: `/api/area?label=${label}&format=geojson`, download: `label${label}.geojson`, class: "button" }, "Patches"));
+  const why = el("div", { class: "why dim" }, "asking why…");
+  box.replaceChildren(el("div", { class: "head" }, el("span", { class: "swatch big", style: `background:${colorOf(label)}` }), el("b", {}, l?.name || `label ${label}`),
+    el("span", { class: "dim" }, l?.name ? `label ${label}` : ""), el("span", { class: "grow" }), el("button", { class: "small", "aria-label": "Close", click: () => choose(null) }, "×")),
+    l ? el("div", { class: "dim" }, `${area(l.area_m2)}, first seen ${seconds(l.first_seen_s)}, last ${seconds(l.last_seen_s)}, ${(100 * l.certainty).toFixed(0)} % sure in the mean`) : "", cell ?? "", buttons, why);
+  try {
+    const w = await ask<Why>(`/api/why?label=${label}`);
+    if (map.selected === label) why.replaceWith(whyTable(w));
+  } catch (problem) { why.textContent = (problem as Error).message; }
+}
+
+function whyTable(w: Why): HTMLElement {
+  const percent = (s: number | null): string => (s === null ? "–" : s.toFixed(2));
+  const bar = (s: number | null, color: string): HTMLElement => el("td", { class: "sim" }, el("i", { style: `width:${60 * Math.max(0, s ?? 0)}px;background:${color}` }), percent(s));
+  const sentence = w.members.length === 1 ? `Only ${w.members[0].robot} knows it: nobody else told of anything alike${w.sigma === null ? "" : ` (it takes ${w.sigma.toFixed(2)})`}.`
+    : `${w.members.length} topics of ${new Set(w.members.map((m) => m.robot)).size} robots were found to be the same thing${w.sigma === null ? "" : `: alike by ${w.sigma.toFixed(2)} or more in the mean`}.`;
+  return el("div", { class: "why" }, el("h3", {}, "Why are these the same?"), el("p", {}, sentence),
+    el("table", {}, el("tr", {}, el("th", {}, "topic"), el("th", {}, "cells"), el("th", { title: "mean similarity to the others of this label" }, "like these"), el("th", { title: "the topic outside most like it" }, "like others")),
+      ...w.members.map((m) => el("tr", {}, el("td", {}, el("span", { class: "dot", style: `background:${robotColor(Number(m.robot.slice(1)))}` }), `${m.robot} · ${m.topic}`), el("td", {}, String(m.cells)), bar(m.mean_similarity, "#0072b2"),
+        m.outsider ? bar(m.outsider.similarity, "#e69f00") : el("td", {}, "–")))),
+    el("p", { class: "dim" }, w.nearest_label ? `The other label most like it is ${nameOf(w.nearest_label.label)} (${w.nearest_label.mean_similarity.toFixed(2)}${w.margin === null ? "" : `, ${Math.abs(w.margin).toFixed(2)} ${w.margin >= 0 ? "short of" : "beyond"} joining`}). ` : "", `Matched by ${w.matcher}, ${w.similarity}.`));
+}
+
+async function inspectCell(x: number, y: number): Promise<void> {
+  const cell = map.cellAt(x, y);
+  if (!cell) return choose(null);
+  if (linking !== null) return choose(cell.label);
+  map.selected = cell.label; map.repaint(); show(); remember();
+  const list = el("div", { class: "cell" }, el("code", {}, `${cell.x.toFixed(2)} ${cell.y.toFixed(2)}`), " m: ", `R${String(cell.robot).padStart(2, "0")} saw it last at ${seconds(cell.seen)}, ${(100 * cell.certainty).toFixed(0)} % sure`);
+  void inspect(cell.label, list);
+  try {
+    const answer = await ask<CellHistory>(`/api/at?x=${cell.x}&y=${cell.y}`);
+    const history = answer.cells[answer.cells.length - 1]?.history ?? [];
+    if (history.length > 1) list.append(el("ul", {}, ...history.map((h) => el("li", {}, `${h.robot} at ${seconds(h.seen_s)}: ${nameOf(h.label)}`))));
+  } catch { /* the cell's own line stands */ }
+}
+
+function nameLabel(label: number): void {
+  if (!mayWrite()) return toast(mission?.read_only ? "This console is read-only." : "Open the URL that serve printed to name things.");
+  const place = document.querySelector(`#legend [data-label="${label}"]`);
+  if (!place) return;
+  const input = el("input", { value: labels.find((l) => l.label === label)?.name ?? "", maxlength: "64", placeholder: "what is it?", "aria-label": "Name" }) as HTMLInputElement;
+  const done = (keep: boolean): void => { const text = input.value.trim(); input.replaceWith(place); if (keep) void decided({ edit: "name", label: String(label), text }).then(() => { if (map.selected === label) void inspect(label); }); };
+  input.addEventListener("keydown", (e) => { e.stopPropagation(); if (e.key === "Enter") done(true); if (e.key === "Escape") done(false); });
+  input.addEventListener("click", (e) => e.stopPropagation());
+  place.replaceWith(input);
+  input.focus(); input.select();
+}
+
+// ---------- time
+
+let travelling = 0;
+function travel(time: number | null): void {
+  past = time === null || (mission && time >= mission.times_s[mission.times_s.length - 1]) ? null : time;
+  clearTimeout(travelling);
+  travelling = window.setTimeout(() => { void refresh(); remember(); }, 60);
+  if (mission) showTime();
+}
+function step(by: number): void {
+  if (!mission || mission.times_s.length < 2) return;
+  const times = mission.times_s, at = past ?? times[times.length - 1];
+  let i = times.length - 1;
+  while (i > 0 && times[i] > at) --i;
+  travel(times[Math.max(0, Math.min(times.length - 1, i + by))]);
+}
+function play(): void {
+  const stop = (): void => { clearInterval(playing); playing = 0; byId("play").textContent = "▶"; };
+  if (playing) return stop();
+  if (past === null && mission) travel(mission.times_s[0]);
+  byId("play").textContent = "❚❚";
+  playing = window.setInterval(() => { step(1); if (past === null) stop(); }, 600);
+}
+
+// ---------- a link to any view
+
+function remember(): void {
+  const hash = new URLSearchParams({ x: map.center.x.toFixed(2), y: map.center.y.toFixed(2), zoom: map.scale.toPrecision(4), layer: map.layer });
+  if (past !== null) hash.set("t", past.toFixed(3));
+  if (map.selected !== null) hash.set("label", String(map.selected));
+  if (map.onlyRobot !== null) hash.set("robot", String(map.onlyRobot));
+  history.replaceState(null, "", "#" + hash.toString());
+}
+function restoreView(): boolean {
+  const hash = new URLSearchParams(location.hash.slice(1));
+  const number = (key: string): number | null => { const v = hash.get(key); return v === null || !Number.isFinite(Number(v)) ? null : Number(v); };
+  const layer = hash.get("layer") as Layer;
+  if (LAYERS.includes(layer)) setLayer(layer);
+  map.selected = number("label"); map.onlyRobot = number("robot");
+  if (map.selected !== null) void inspect(map.selected);
+  const [x, y, zoom, t] = [number("x"), number("y"), number("zoom"), number("t")];
+  if (t !== null) travel(t);
+  if (map.selected !== null || map.onlyRobot !== null) map.repaint();
+  if (x === null || y === null || zoom === null || zoom <= 0) return false;
+  map.center = { x, y }; map.scale = Math.max(0.02, Math.min(400, zoom)); map.draw();
+  return true;
+}
+
+// ---------- hands
+
+const KEYS: [string, string][] = [["click", "what is here, and why"], ["drag, wheel", "move, zoom"], ["arrows + − 0", "move, zoom, see everything"], ["1 … 5", "label, certainty, age, robot, coverage"],
+  ["[ ] space", "earlier, later, play"], ["n", "name the chosen label"], ["u", "undo"], ["Esc", "choose nothing"]];
+
+function hands(): void {
+  const canvas = map.canvas;
+  let from: [number, number] | null = null, moved = false;
+  canvas.addEventListener("pointerdown", (e) => { from = [e.clientX, e.clientY]; moved = false; canvas.setPointerCapture(e.pointerId); });
+  canvas.addEventListener("pointermove", (e) => {
+    if (from) {
+      if (Math.abs(e.clientX - from[0]) + Math.abs(e.clientY - from[1]) > 3 || moved) { moved = true; map.pan(e.clientX - from[0], e.clientY - from[1]); from = [e.clientX, e.clientY]; }
+    }
+    const [x, y] = map.toWorld(e.offsetX, e.offsetY), cell = map.cellAt(x, y);
+    byId("readout").textContent = `${x.toFixed(1)}, ${y.toFixed(1)} m` + (cell ? ` · ${nameOf(cell.label)} · R${String(cell.robot).padStart(2, "0")} at ${seconds(cell.seen)} · ${(100 * cell.certainty).toFixed(0)} % sure` : "");
+  });
+  canvas.addEventListener("pointerup", (e) => { if (from && !moved) void inspectCell(...map.toWorld(e.offsetX, e.offsetY)); else remember(); from = null; });
+  canvas.addEventListener("wheel", (e) => { e.preventDefault(); map.zoom(Math.exp(-e.deltaY * 0.0015), e.offsetX, e.offsetY); remember(); }, { passive: false });
+  for (const layer of LAYERS) byId("layers").append(el("button", { role: "radio", "data-layer": layer, "aria-checked": String(layer === map.layer), click: () => setLayer(layer) }, LAYER_TEXT[layer]));
+  byId("fit").addEventListener("click", () => { map.fit(); remember(); });
+  byId<HTMLInputElement>("tracks").addEventListener("change", (e) => { map.showTracks = (e.target as HTMLInputElement).checked; map.draw(); });
+  byId<HTMLInputElement>("names").addEventListener("change", (e) => { map.showRobots = (e.target as HTMLInputElement).checked; map.draw(); });
+  byId("undo").addEventListener("click", () => void takeBack());
+  byId("copy").addEventListener("click", () => { remember(); void navigator.clipboard?.writeText(location.href).then(() => toast("The link is copied. It carries no key."), () => toast(location.href)); });
+  byId<HTMLSelectElement>("export").addEventListener("change", (e) => { const choice = e.target as HTMLSelectElement; if (choice.value) location.href = `/api/export?format=${choice.value}`; choice.value = ""; });
+  byId<HTMLInputElement>("time").addEventListener("input", (e) => travel(Number((e.target as HTMLInputElement).value)));
+  byId("now").addEventListener("click", () => travel(null));
+  byId("play").addEventListener("click", play);
+  const keys = byId<HTMLDialogElement>("keys");
+  keys.append(el("h2", {}, "Keys"), el("table", {}, ...KEYS.map(([k, what]) => el("tr", {}, el("td", {}, el("kbd", {}, k)), el("td", {}, what)))), el("form", { method: "dialog" }, el("button", {}, "Close")));
+  byId("help").addEventListener("click", () => keys.showModal());
+  addEventListener("resize", () => { map.draw(); showLink(); });
+  addEventListener("keydown", (e) => {
+    if (e.ctrlKey || e.metaKey || e.altKey || (e.target as HTMLElement).matches("input:not([type=range]):not([type=checkbox]), select")) return;
+    const act: Record<string, () => void> = {
+      ArrowLeft: () => map.pan(60, 0), ArrowRight: () => map.pan(-60, 0), ArrowUp: () => map.pan(0, 60), ArrowDown: () => map.pan(0, -60),
+      "+": () => map.zoom(1.3), "=": () => map.zoom(1.3), "-": () => map.zoom(1 / 1.3), "0": () => map.fit(), "[": () => step(-1), "]": () => step(1), " ": play,
+      n: () => { if (map.selected !== null) nameLabel(map.selected); }, u: () => { if (mayWrite()) void takeBack(); }, "?": () => keys.showModal(),
+      Escape: () => { linking = null; byId("map").classList.remove("linking"); map.onlyRobot = null; choose(null); },
+    };
+    LAYERS.forEach((layer, i) => (act[String(i + 1)] = () => setLayer(layer)));
+    if (e.target instanceof HTMLInputElement && e.target.type === "range" && e.key.startsWith("Arrow")) return;
+    if (e.target instanceof HTMLButtonElement && e.key === " ") return;
+    const action = act[e.key];
+    if (!action) return;
+    e.preventDefault(); action();
+    if (e.key.startsWith("Arrow") || "+=-0".includes(e.key)) remember();
+  });
+}
+
+hands();
+listen();
+void refresh();

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The map on a canvas: squares of 256 x 256 columns kept as pictures, redrawn only where cells changed.
+import { faded, parse, ramp, rgba, robotColor } from "./colors";
+import type { Label, Node, Track } from "./api";
+import { SIDE, type Tile, type TileSet } from "./tiles";
+
+export type Layer = "label" | "certainty" | "age" | "robot" | "coverage";
+export const LAYERS: Layer[] = ["label", "certainty", "age", "robot", "coverage"];
+export interface Cell { x: number; y: number; label: number; seen: number; robot: number; certainty: number }
+
+const CHUNK = 8; // tiles along the edge of a picture
+const SILENT_S = 5;
+
+interface Chunk { canvas: HTMLCanvasElement; context: CanvasRenderingContext2D; x: number; y: number; tiles: Set<string> }
+
+export class MapView {
+  cellSize = 1; base = 0; sequence = 0; life = "";
+  layer: Layer = "label"; selected: number | null = null; onlyRobot: number | null = null;
+  showTracks = true; showRobots = true; tracksUntil = Infinity;
+  center = { x: 0, y: 0 }; scale = 4; // metres; pixels a metre
+  tracks: Track[] = []; nodes: Node[] = [];
+  lastFrameMs = 0;
+  private tiles = new Map<string, Tile>();
+  private chunks = new Map<string, Chunk>();
+  private dirty = new Set<string>();
+  private colors = new Map<number, number>();
+  private oldest = 0; private newest = 1;
+  private asked = false;
+
+  constructor(readonly canvas: HTMLCanvasElement) {}
+
+  get isEmpty(): boolean { return this.tiles.size === 0; }
+
+  take(set: TileSet): void {
+    this.cellSize = set.cellSize; this.base = set.base; this.sequence = set.sequence; this.life = set.life;
+    if (set.since === 0) { this.tiles.clear(); this.chunks.clear(); this.dirty.clear(); }
+    for (const tile of set.tiles) {
+      const key = tile.x + "," + tile.y;
+      this.tiles.set(key, tile);
+      this.dirty.add(key);
+    }
+    const span = [this.oldest, this.newest].join();
+    this.oldest = Infinity; this.newest = -Infinity;
+    for (const tile of this.tiles.values()) for (let i = 0; i < tile.label.length; ++i) if (tile.label[i] >= 0) {
+      if (tile.seen[i] < this.oldest) this.oldest = tile.seen[i];
+      if (tile.seen[i] > this.newest) this.newest = tile.seen[i];
+    }
+    if (this.layer === "age" && span !== [this.oldest, this.newest].join()) this.repaint();
+    this.draw();
+  }
+
+  setLabels(labels: Label[]): void {
+    const before = this.colors;
+    this.colors = new Map(labels.map((l) => [l.label, parse(l.color)]));
+    if ([...this.colors].some(([label, color]) => before.get(label) !== color)) this.repaint();
+  }
+
+  repaint(): void {
+    for (const key of this.tiles.keys()) this.dirty.add(key);
+    this.draw();
+  }
+
+  ageRange(): [number, number] { return [0, Math.max(0, (this.newest - this.oldest) / 10)]; }
+
+  private colorer(): (tile: Tile, i: number) => number {
+    const chosen = (tile: Tile, i: number): boolean =>
+      (this.selected === null || tile.label[i] === this.selected) && (this.onlyRobot === null || tile.robot[i] === this.onlyRobot);
+    const span = Math.max(1, this.newest - this.oldest);
+    const robots = new Map<number, number>();
+    const plain = (tile: Tile, i: number): number => {
+      switch (this.layer) {
+        case "label": return this.colors.get(tile.label[i]) ?? rgba(150, 150, 150);
+        case "certainty": return ramp(tile.certainty[i] / 255);
+        case "age": return ramp(1 - (this.newest - tile.seen[i]) / span);
+        case "robot": {
+          let color = robots.get(tile.robot[i]);
+          if (color === undefined) robots.set(tile.robot[i], (color = parse(robotColor(tile.robot[i]))));
+          return color;
+        }
+        case "coverage": return rgba(68, 140, 150);
+      }
+    };
+    return (tile, i) => (tile.label[i] < 0 ? 0 : chosen(tile, i) ? plain(tile, i) : faded(plain(tile, i)));
+  }
+
+  private paint(): void {
+    const color = this.colorer();
+    const image = new ImageData(SIDE, SIDE);
+    const pixels = new Uint32Array(image.data.buffer);
+    for (const key of this.dirty) {
+      const tile = this.tiles.get(key);
+      if (!tile) continue;
+      const cx = Math.floor(tile.x / CHUNK), cy = Math.floor(tile.y / CHUNK), chunkKey = cx + "," + cy;
+      let chunk = this.chunks.get(chunkKey);
+      if (!chunk) {
+        const canvas = document.createElement("canvas");
+        canvas.width = canvas.height = CHUNK * SIDE;
+        chunk = { canvas, context: canvas.getContext("2d")!, x: cx, y: cy, tiles: new Set() };
+        this.chunks.set(chunkKey, chunk);
+      }
+      chunk.tiles.add(key);
+      for (let j = 0; j < SIDE; ++j) for (let i = 0; i < SIDE; ++i) pixels[(SIDE - 1 - j) * SIDE + i] = color(tile, j * SIDE + i);
+      chunk.context.putImageData(image, (tile.x - cx * CHUNK) * SIDE, (CHUNK - 1 - (tile.y - cy * CHUNK)) * SIDE);
+    }
+    this.dirty.clear();
+  }
+
+  draw(): void {
+    if (this.asked) return;
+    this.asked = true;
+    requestAnimationFrame(() => { this.asked = false; this.frame(); });
+  }
+
+  toScreen(x: number, y: number): [number, number] {
+    return [this.canvas.clientWidth / 2 + (x - this.center.x) * this.scale, this.canvas.clientHeight / 2 - (y - this.center.y) * this.scale];
+  }
+  toWorld(px: number, py: number): [number, number] {
+    return [this.center.x + (px - this.canvas.clientWidth / 2) / this.scale, this.center.y - (py - this.canvas.clientHeight / 2) / this.scale];
+  }
+
+  private frame(): void {
+    const begun = performance.now();
+    const ratio = devicePixelRatio || 1, width = this.canvas.clientWidth, height = this.canvas.clientHeight;
+    if (this.canvas.width !== Math.round(width * ratio) || this.canvas.height !== Math.round(height * ratio)) {
+      this.canvas.width = Math.round(width * ratio);
+      this.canvas.height = Math.round(height * ratio);
+    }
+    this.paint();
+    const c = this.canvas.getContext("2d")!;
+    c.setTransform(1, 0, 0, 1, 0, 0);
+    c.fillStyle = "#eef0f2";
+    c.fillRect(0, 0, this.canvas.width, this.canvas.height);
+    const side = CHUNK * SIDE * this.cellSize;
+    c.imageSmoothingEnabled = this.scale * this.cellSize * ratio < 1;
+    for (const chunk of this.chunks.values()) {
+      // Index i is centred at i x size: its low edge half a cell below. Edges are rounded alike, so that none gapes.
+      const [left, bottom] = this.toScreen(chunk.x * side - this.cellSize / 2, chunk.y * side - this.cellSize / 2);
+      const [right, top] = this.toScreen((chunk.x + 1) * side - this.cellSize / 2, (chunk.y + 1) * side - this.cellSize / 2);
+      if (right < 0 || left > width || bottom < 0 || top > height) continue;
+      const x = Math.round(left * ratio), y = Math.round(top * ratio);
+      c.drawImage(chunk.canvas, x, y, Math.round(right * ratio) - x, Math.round(bottom * ratio) - y);
+    }
+    c.setTransform(ratio, 0, 0, ratio, 0, 0);
+    this.drawRobots(c);
+    this.drawScale(c, height);
+    this.lastFrameMs = performance.now() - begun;
+  }
+
+  private drawRobots(c: CanvasRenderingContext2D): void {
+    const newest = Math.max(...this.nodes.map((n) => n.heard_s), 0);
+    const last = new Map<string, [number, number]>();
+    c.lineJoin = "round";
+    for (const track of this.tracks) {
+      const points = track.points.filter((p) => p[0] <= this.tracksUntil);
+      if (points.length === 0) continue;
+      last.set(track.robot, [points[points.length - 1][1], points[points.length - 1][2]]);
+      if (!this.showTracks) continue;
+      const number = Number(track.robot.slice(1));
+      for (const [style, thickness] of [["rgba(255,255,255,.75)", 3.5], [robotColor(number), 1.5]] as const) {
+        c.strokeStyle = style;
+        c.lineWidth = thickness;
+        c.globalAlpha = this.onlyRobot === null || this.onlyRobot === number ? 0.9 : 0.15;
+        c.beginPath();
+        points.forEach((p, i) => { const [x, y] = this.toScreen(p[1], p[2]); if (i === 0) c.moveTo(x, y); else c.lineTo(x, y); });
+        c.stroke();
+      }
+      c.globalAlpha = 1;
+    }
+    if (!this.showRobots) return;
+    c.font = "600 11px system-ui, sans-serif";
+    c.textBaseline = "middle";
+    for (const node of this.nodes) {
+      if (node.phase === "node" || node.observation < 0) continue;
+      const at = last.get(node.name) ?? [node.position_m[0], node.position_m[1]];
+      const [x, y] = this.toScreen(at[0], at[1]);
+      const color = isSilent(node, newest) ? "#8a8f96" : robotColor(Number(node.name.slice(1)));
+      c.beginPath();
+      c.arc(x, y, 6, 0, 2 * Math.PI);
+      c.fillStyle = node.phase === "flying" ? color : "#fff";
+      c.fill();
+      c.lineWidth = 2.5;
+      c.strokeStyle = node.phase === "flying" ? "#fff" : color;
+      c.stroke();
+      const width = c.measureText(node.name).width + 8;
+      c.fillStyle = "rgba(255,255,255,.88)";
+      c.beginPath();
+      c.roundRect(x + 9, y - 8, width, 16, 4);
+      c.fill();
+      c.fillStyle = "#1d2733";
+      c.fillText(node.name, x + 13, y + 0.5);
+    }
+  }
+
+  private drawScale(c: CanvasRenderingContext2D, height: number): void {
+    const goal = 110 / this.scale, power = 10 ** Math.floor(Math.log10(goal));
+    const metres = [5, 2, 1].map((k) => k * power).find((m) => m <= goal) ?? power;
+    const width = metres * this.scale, y = height - 18;
+    c.fillStyle = "rgba(255,255,255,.88)";
+    c.beginPath(); c.roundRect(12, y - 18, width + 16, 28, 5); c.fill();
+    c.strokeStyle = "#1d2733"; c.lineWidth = 1.5;
+    c.beginPath(); c.moveTo(20, y - 3); c.lineTo(20, y + 2); c.lineTo(20 + width, y + 2); c.lineTo(20 + width, y - 3); c.stroke();
+    c.fillStyle = "#1d2733"; c.font = "11px system-ui, sans-serif"; c.textBaseline = "alphabetic";
+    c.fillText(`${metres} m`, 24, y - 4);
+  }
+
+  cellAt(x: number, y: number): Cell | null {
+    const cx = Math.floor(x / this.cellSize + 0.5), cy = Math.floor(y / this.cellSize + 0.5);
+    const tx = Math.floor(cx / SIDE), ty = Math.floor(cy / SIDE);
+    const tile = this.tiles.get(tx + "," + ty);
+    const i = (cy - ty * SIDE) * SIDE + (cx - tx * SIDE);
+    if (!tile || tile.label[i] < 0) return null;
+    return { x: cx * this.cellSize, y: cy * this.cellSize, label: tile.label[i], seen: this.base + tile.seen[i] / 10,
+             robot: tile.robot[i], certainty: tile.certainty[i] / 255 };
+  }
+
+  fit(): void {
+    let [x0, y0, x1, y1] = [Infinity, Infinity, -Infinity, -Infinity];
+    for (const tile of this.tiles.values()) for (let j = 0; j < SIDE; ++j) for (let i = 0; i < SIDE; ++i) {
+      if (tile.label[j * SIDE + i] < 0) continue;
+      const x = tile.x * SIDE + i, y = tile.y * SIDE + j;
+      x0 = Math.min(x0, x); x1 = Math.max(x1, x); y0 = Math.min(y0, y); y1 = Math.max(y1, y);
+    }
+    if (x0 > x1) return;
+    this.center = { x: ((x0 + x1) / 2) * this.cellSize, y: ((y0 + y1) / 2) * this.cellSize };
+    this.scale = 0.92 * Math.min(this.canvas.clientWidth / ((x1 - x0 + 1) * this.cellSize), this.canvas.clientHeight / ((y1 - y0 + 1) * this.cellSize));
+    this.draw();
+  }
+
+  zoom(factor: number, px = this.canvas.clientWidth / 2, py = this.canvas.clientHeight / 2): void {
+    const [x, y] = this.toWorld(px, py);
+    this.scale = Math.max(0.02, Math.min(400, this.scale * factor));
+    const [nx, ny] = this.toWorld(px, py);
+    this.center = { x: this.center.x + x - nx, y: this.center.y + y - ny };
+    this.draw();
+  }
+
+  pan(px: number, py: number): void {
+    this.center = { x: this.center.x - px / this.scale, y: this.center.y + py / this.scale };
+    this.draw();
+  }
+}
+
+// Heard last while others were heard later, and not because it has landed.
+export const isSilent = (node: Node, newest: number): boolean => node.phase === "flying" && newest - node.heard_s > SILENT_S;

@@ -1,0 +1,344 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""The web console's server: the same answers as the commands, nobody who should not, and no way to crash it.
+
+Usage: serve_test.py BIN_DIR DOCS_DIR [unittest arguments], inside a network namespace of its own.
+"""
+import gzip
+import http.client
+import json
+import os
+import random
+import shutil
+import signal
+import socket
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+import urllib.parse
+
+import jsonschema
+
+BIN, DOCS = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
+CONSOLE = os.path.join(BIN, "operator_console")
+TILE = 8 + 1024 * 13
+
+
+def schema(name):
+    with open(os.path.join(DOCS, "schemas", name + ".schema.json"), encoding="utf-8") as file:
+        return json.load(file)
+
+
+def command(*arguments):
+    done = subprocess.run([CONSOLE, "--log-level", "error", *arguments], capture_output=True, text=True, timeout=120)
+    if done.returncode != 0:
+        raise AssertionError(f"{arguments}: exit {done.returncode}\n{done.stderr}")
+    return done.stdout
+
+
+class Server:
+    """operator_console serve, ended at the end."""
+
+    def __init__(self, *arguments):
+        self.process = subprocess.Popen([CONSOLE, "serve", "--port", "0", "--json", *arguments], stdout=subprocess.PIPE)
+        said = json.loads(self.process.stdout.readline())
+        self.port, self.token, self.url = said["port"], said["token"], said["url"]
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.process.send_signal(signal.SIGINT)
+        code = self.process.wait(timeout=20)
+        self.process.stdout.close()
+        assert code == 0, f"serve ended with {code}"
+
+    def ask(self, path, method="GET", body=None, headers=None, host=None):
+        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=30)
+        connection.putrequest(method, path, skip_host=True)
+        connection.putheader("Host", host or f"127.0.0.1:{self.port}")
+        for name, value in (headers or {}).items():
+            connection.putheader(name, value)
+        if body is not None:
+            connection.putheader("Content-Length", str(len(body)))
+        connection.endheaders(body)
+        response = connection.getresponse()
+        content = response.read()
+        connection.close()
+        return response, content
+
+    def json(self, path, status=200):
+        response, content = self.ask(path)
+        assert response.status == status, (path, response.status, content[:300])
+        return json.loads(content)
+
+    def settled(self, phase="whole"):
+        for _ in range(600):
+            mission = self.json("/api/mission")
+            if mission["phase"] == phase:
+                return mission
+            time.sleep(0.1)
+        raise AssertionError(f"it stays {mission}")
+
+
+def tiles(content):
+    """What /api/map says as {(x, y): (label, robot)}, and the header."""
+    magic, count, cell_size, base, sequence, since, life = struct.unpack_from("<4sIddQQQ", content)
+    assert magic == b"SHT1" and len(content) == 48 + count * TILE, (magic, count, len(content))
+    cells = {}
+    for at in range(48, len(content), TILE):
+        x, y = struct.unpack_from("<ii", content, at)
+        label = struct.unpack_from("<1024i", content, at + 8)
+        robot = struct.unpack_from("<1024h", content, at + 8 + 8192)
+        for i in range(1024):
+            if label[i] >= 0:
+                cells[32 * x + i % 32, 32 * y + i // 32] = label[i], robot[i]
+    return cells, {"cell_size": cell_size, "sequence": sequence, "since": since, "life": life, "count": count}
+
+
+class Serve(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.top = tempfile.mkdtemp(prefix="shoal_serve_")
+        cls.run_dir = os.path.join(cls.top, "run")
+        command("launch", "--world", "reef:tuning", "--robots", "3", "--observations", "6", "--seed", "7", "--record",
+                "--out", cls.run_dir)
+        cls.server = Server("--run", cls.run_dir).__enter__()
+        cls.server.settled()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.server.__exit__()
+        shutil.rmtree(cls.top)
+
+    def test_page_and_terminal_give_the_same_answers(self):
+        label = json.loads(command("labels", "--run", self.run_dir, "--json"))["labels"][0]["label"]
+        with open(os.path.join(self.run_dir, "global_map.csv"), encoding="utf-8") as file:
+            x, y = file.readlines()[1].split(",")[:2]
+        for path, arguments, name in [("status", ["status"], "status"), ("labels", ["labels"], "labels"), ("edits", ["edits"], "edits"),
+                                      (f"at?x={x}&y={y}", ["at", x, y], "at"), (f"why?label={label}", ["why", str(label)], "why"),
+                                      (f"area?label={label}&min_m2=2", ["area", str(label), "--min-m2", "2"], "area"),
+                                      ("node?node=R01", ["node", "R01"], "node"), ("diff?from=2&until=5", ["diff", "2", "5"], "diff")]:
+            answer = self.server.json("/api/" + path)
+            jsonschema.validate(answer, schema(name))
+            told = json.loads(command(*arguments, "--run", self.run_dir, "--json"))
+            if name == "status":  # a recording's last moment: same map; who has heard whom whole is not in it
+                answer, told = ({k: a[k] for k in ("cells", "labels", "mission_id")} for a in (answer, told))
+            self.assertEqual(answer, told, path)
+
+    def test_the_map_is_that_of_the_file(self):
+        cells, header = tiles(self.server.ask("/api/map")[1])
+        size = header["cell_size"]
+        expected = {}
+        with open(os.path.join(self.run_dir, "global_map.csv"), encoding="utf-8") as file:
+            for row in file.readlines()[1:]:
+                x, y, z, label, robot = row.split(",")[:5]
+                key = round(float(x) / size), round(float(y) / size)
+                if key not in expected or float(z) >= expected[key][0]:
+                    expected[key] = float(z), int(label), int(robot[1:])
+        self.assertGreater(len(cells), 50)
+        self.assertEqual(cells, {key: value[1:] for key, value in expected.items()})
+        nothing = tiles(self.server.ask(f"/api/map?since={header['sequence']}&life={header['life']}")[1])
+        self.assertEqual(nothing[1]["count"], 0)
+        stranger = tiles(self.server.ask(f"/api/map?since={header['sequence']}&life=1")[1])
+        self.assertEqual(stranger[0], cells)
+        zipped, content = self.server.ask("/api/map", headers={"Accept-Encoding": "gzip"})
+        self.assertEqual(zipped.getheader("Content-Encoding"), "gzip")
+        self.assertEqual(tiles(gzip.decompress(content))[0], cells)
+
+    def test_history_grows(self):
+        times = self.server.settled()["times_s"]
+        self.assertGreater(len(times), 3)
+        self.assertEqual(times, sorted(times))
+        counts = [len(tiles(self.server.ask(f"/api/map?at={t}")[1])[0]) for t in times]
+        self.assertLess(counts[0], counts[-1])
+        self.assertEqual(counts, sorted(counts))
+        events = self.server.json("/api/events")["events"]
+        self.assertEqual(sum(e["kind"] == "landed" for e in events), 3, events)
+        traffic = self.server.json("/api/traffic")
+        summary = json.loads(open(os.path.join(self.run_dir, "summary.json"), encoding="utf-8").read())
+        for node in traffic["nodes"]:
+            if node["node"].startswith("R"):
+                for i, name in enumerate(traffic["classes"]):  # what was sent after the last heartbeat is not in it
+                    said = sum(row[1 + i] for row in node["bins"])
+                    self.assertLessEqual(said, summary["bytes"][node["node"]].get(name, 0), (node["node"], name))
+        self.assertEqual([t["robot"] for t in self.server.json("/api/tracks")["tracks"]], ["R00", "R01", "R02"])
+
+    def test_all_of_the_description_is_answered(self):
+        with open(os.path.join(DOCS, "openapi.json"), "rb") as file:
+            said = file.read()
+        self.assertEqual(self.server.ask("/openapi.json")[1], said)
+        description = json.loads(said)
+        for path, methods in description["paths"].items():
+            if "get" not in methods or path == "/api/stream":
+                continue
+            needed = {p["name"]: "csv" if p["name"] == "format" else "1" for p in methods["get"]["parameters"] if p["required"]}
+            response, content = self.server.ask(path + "?" + urllib.parse.urlencode(needed))
+            self.assertIn(response.status, (200, 400), path)
+            kind, = methods["get"]["responses"]["200"]["content"].items()
+            inline = kind[1]["schema"]
+            if response.status == 200 and kind[0] == "application/json" and "schemas/" not in json.dumps(inline).replace("components/schemas/", ""):
+                jsonschema.validate(json.loads(content), {**inline, "components": description["components"]})
+            if response.status != 200:
+                self.assertIn("error", json.loads(content))
+            if needed:
+                self.assertEqual(self.server.ask(path)[0].status, 400, path)
+
+    def test_exports_are_those_of_the_command(self):
+        for format_ in self.server.json("/api/mission")["formats"]:
+            out = os.path.join(self.top, "export." + format_)
+            command("export", "--format", format_, "--out", out, "--run", self.run_dir)
+            with open(out, "rb") as file:
+                self.assertEqual(self.server.ask("/api/export?format=" + format_)[1], file.read(), format_)
+
+    def test_strangers_are_turned_away(self):
+        ask = self.server.ask
+        self.assertEqual(ask("/api/status", host="evil.example:80")[0].status, 403)
+        self.assertEqual(ask("/api/status", host=f"localhost:{self.server.port}")[0].status, 200)
+        self.assertEqual(ask("/api/status", headers={"Origin": "http://evil.example"})[0].status, 403)
+        edit = json.dumps({"edit": "exclude", "robot": "R00"})
+        self.assertEqual(ask("/api/edit", "POST", edit)[0].status, 401)
+        self.assertEqual(ask("/api/edit", "POST", edit, {"Authorization": "Bearer " + "0" * 32})[0].status, 401)
+        self.assertEqual(ask("/api/edit", "GET")[0].status, 404)
+        self.assertEqual(ask("/api/status", "DELETE")[0].status, 405)
+        key = {"Authorization": "Bearer " + self.server.token}
+        for wrong in ("", "[]", "{", "7", '{"edit": "burn"}', '{"edit": "name"}'):
+            self.assertEqual(ask("/api/edit", "POST", wrong, key)[0].status, 400, wrong)
+        self.assertEqual(ask("/api/edit", "POST", "x" * 70000, key)[0].status, 413)
+        with Server("--run", self.run_dir, "--read-only") as other:
+            self.assertEqual(other.token, "")
+            other.settled()
+            self.assertEqual(other.ask("/api/edit", "POST", edit, {"Authorization": "Bearer "})[0].status, 403)
+        for path in ("/../../etc/passwd", "/%2e%2e/etc/passwd", "//etc/passwd", "/page.js/../x", "/\x01", "/%00", "/" + "a" * 3000):
+            response, content = ask(path.replace("\x01", "%01"))
+            self.assertIn(response.status, (400, 404, 414), path)
+            self.assertNotIn(b"root:", content)
+
+    def test_decisions_reach_the_map_and_are_undone(self):
+        folder = os.path.join(self.top, "judged")
+        shutil.copytree(self.run_dir, folder)
+        with Server("--run", folder) as server:
+            server.settled()
+            key = {"Authorization": "Bearer " + server.token}
+            label = server.json("/api/labels")["labels"][0]["label"]
+
+            def decide(**edit):
+                response, content = server.ask("/api/edit", "POST", json.dumps(edit), key)
+                self.assertEqual(response.status, 200, content)
+
+            def until(what):
+                for _ in range(200):
+                    if what():
+                        return
+                    time.sleep(0.1)
+                self.fail("it was decided, and nothing came of it")
+
+            decide(edit="name", label=str(label), text="<b>sand</b>")
+            until(lambda: any(l["name"] == "<b>sand</b>" for l in server.json("/api/labels")["labels"]))
+            server.settled()
+            before = tiles(server.ask("/api/map")[1])
+            decide(edit="exclude", robot="R01")
+            until(lambda: all(r != 1 for _, r in tiles(server.ask("/api/map")[1])[0].values()))
+            decide(edit="undo")
+            until(lambda: tiles(server.ask("/api/map")[1])[0] == before[0])
+
+    def test_nothing_that_is_sent_ends_it(self):
+        rng = random.Random(1)
+        good = b"GET /api/labels HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n"
+        for n in range(300):
+            bytes_ = bytearray(good)
+            for _ in range(rng.randint(1, 12)):
+                bytes_[rng.randrange(len(bytes_))] = rng.randrange(256)
+            if n % 10 == 0:
+                bytes_ = bytearray(rng.randbytes(rng.randint(1, 4000)))
+            with socket.create_connection(("127.0.0.1", self.server.port), timeout=5) as link:
+                try:
+                    link.sendall(bytes_[: rng.randint(1, len(bytes_))] if n % 3 == 0 else bytes_)
+                except OSError:
+                    pass
+        self.assertEqual(self.server.ask("/api/labels")[0].status, 200)
+
+    def test_slow_and_vanishing_clients_cost_a_connection_and_nothing_else(self):
+        idle = [socket.create_connection(("127.0.0.1", self.server.port), timeout=5) for _ in range(400)]
+        for link in idle:
+            link.sendall(b"GET /api/map HTTP/1.1\r\nHo")  # and never goes on
+        streams = []
+        for _ in range(80):
+            link = socket.create_connection(("127.0.0.1", self.server.port), timeout=5)
+            link.sendall(b"GET /api/stream HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n")
+            streams.append(link)
+        answers = [link.recv(4096)[:12] for link in streams]
+        self.assertIn(answers.count(b"HTTP/1.1 200"), range(60, 65))
+        self.assertGreaterEqual(answers.count(b"HTTP/1.1 503"), 16)
+        for link in idle[:20]:  # asks, and never takes the answer
+            link.sendall(b"st: 127.0.0.1\r\n\r\n")
+        self.assertEqual(self.server.ask("/api/labels")[0].status, 200)
+        for link in idle + streams:
+            link.close()
+        self.assertEqual(self.server.ask("/api/labels")[0].status, 200)
+
+
+class Live(unittest.TestCase):
+    """A node that works, goes away and comes back."""
+
+    def test_a_live_mission_is_followed(self):
+        with tempfile.TemporaryDirectory(prefix="shoal_live_") as top:
+            state = os.path.join(top, "state")
+            url = ["--lcm-url", "udpm://239.255.76.68:7681?ttl=0", "--mission", "live"]
+            logs = open(os.path.join(top, "log"), "wb")
+            started = []
+
+            def start(program, *arguments):
+                started.append(subprocess.Popen([os.path.join(BIN, program), *arguments, *url], stdout=logs, stderr=logs))
+                return started[-1]
+
+            try:
+                with Server("--node", state) as server:
+                    mission = server.json("/api/mission")
+                    self.assertEqual(mission["sequence"], 0)
+                    self.assertEqual(server.ask("/api/map")[0].status, 503)
+                    node = start("fusion_node", "--node", "OPERATOR", "--state", state)
+                    for n in range(3):
+                        start("robot_agent", "--robot", f"R0{n}", "--robots", "3", "--source", "reef:tuning", "--observations", "12",
+                              "--budget", "0", "--rate", "max", "--out", os.path.join(top, "out"))
+                    with socket.create_connection(("127.0.0.1", server.port), timeout=60) as stream:
+                        stream.sendall(b"GET /api/stream HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n")
+                        said = b""
+                        while said.count(b'"phase":"live"') < 3:
+                            said += stream.recv(4096)
+                    for robot in started[1:]:
+                        self.assertEqual(robot.wait(timeout=60), 0)
+                    whole = json.loads(command("status", "--node", state, "--json"))["cells"]
+                    for _ in range(100):
+                        cells, header = tiles(server.ask("/api/map")[1])
+                        if server.json("/api/status")["cells"] == whole:
+                            break
+                        time.sleep(0.1)
+                    self.assertEqual(server.json("/api/status")["cells"], whole)
+                    self.assertGreater(len(cells), 50)
+                    key = {"Authorization": "Bearer " + server.token}
+                    label = server.json("/api/labels")["labels"][0]["label"]
+                    edit = json.dumps({"edit": "name", "label": str(label), "text": "sand"})
+                    self.assertEqual(server.ask("/api/edit", "POST", edit, key)[0].status, 200)
+                    for _ in range(100):
+                        if "sand" in [l["name"] for l in server.json("/api/labels")["labels"]]:
+                            break
+                        time.sleep(0.1)
+                    self.assertIn("sand", [l["name"] for l in server.json("/api/labels")["labels"]])
+                    node.send_signal(signal.SIGINT)
+                    node.wait(timeout=20)
+                    self.assertIn("no running node", server.settled("lost")["problem"])
+                    self.assertEqual(tiles(server.ask("/api/map")[1])[0], cells)  # what was known is still shown
+            finally:
+                for process in started:
+                    if process.poll() is None:
+                        process.kill()
+                        process.wait()
+                logs.close()
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]], verbosity=2)
