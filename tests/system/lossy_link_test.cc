@@ -58,7 +58,7 @@ class Party {
         bus_(network.connect()),
         link_(fusion_node::emulated(*bus_, scene.link, {name, kMission, 1, 0})),
         state_(kMission, {}),
-        sender_(*bus_, nullptr, senderOptions(scene.budget)),
+        sender_(link_ ? static_cast<comms::Bus&>(*link_) : *bus_, nullptr, senderOptions(scene.budget)),
         repair_(repairOptions(), state_, sender_) {}
 
   void learn(int step) {
