@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <stdexcept>
+#include <vector>
 
 #include <spdlog/fmt/fmt.h>
 
@@ -29,9 +30,11 @@ MissionSummary readSummaryOf(const std::string& run) {
   MissionSummary mission;
   const mapping::MissionView view = viewOfRun(run);  // says what is wrong with the folder
   mission.facts = Json::parse(mapping::readFile(run + "/summary.json"));
-  mission.labels = mapping::labelsAnswer(view).at("labels");
-  std::ranges::stable_sort(mission.labels, std::ranges::greater{},
+  const auto labels = mapping::labelsAnswer(view).at("labels");
+  std::vector<Json> rows(labels.begin(), labels.end());
+  std::ranges::stable_sort(rows, std::ranges::greater{},
                            [](const Json& row) { return row.at("area_m2").get<double>(); });
+  mission.labels = rows;
   for (const Json& row : mission.labels) mission.area_m2 += row.at("area_m2").get<double>();
   mission.pictures = picturesOfRun(run);
   namespace fs = std::filesystem;

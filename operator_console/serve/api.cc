@@ -173,9 +173,13 @@ HttpResponse Api::edit(const HttpRequest& request) {
     throw std::invalid_argument(
         R"(an edit is a JSON object: {"edit": "name", "label": "10004", "text": "sand"})");
   }
-  const HttpResponse answer = asked(question);
-  if (answer.status == 200) feed_.lookAgain();
-  return answer;
+  try {
+    const HttpResponse answer = asked(question);
+    if (answer.status == 200) feed_.lookAgain();
+    return answer;
+  } catch (const Json::exception& wrong) {
+    throw std::invalid_argument(std::string("the edit lacks something: ") + wrong.what());
+  }
 }
 
 }  // namespace shoal::console

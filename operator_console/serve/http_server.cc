@@ -322,7 +322,7 @@ MHD_Result HttpServer::Core::take(MHD_Connection* connection, const char* path, 
     if (!stopping && jobs.size() < kMaxWaiting) {
       MHD_suspend_connection(connection);
       jobs.push_back(&exchange);
-      wake.notify_one();
+      wake.notify_all();  // the one that pings waits for the same
       return MHD_YES;
     }
   }

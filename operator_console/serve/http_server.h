@@ -20,8 +20,8 @@ struct HttpResponse {
   int status = 200;
   std::string type = "application/json";
   std::string body = {};
-  std::string file_name = {};   ///< not empty: to be saved under that name
-  bool is_stream = false;  ///< server-sent events: what publish() says from now on, `body` first
+  std::string file_name = {};  ///< not empty: to be saved under that name
+  bool is_stream = false;      ///< server-sent events: what publish() says from now on, `body` first
 };
 
 struct HttpOptions {

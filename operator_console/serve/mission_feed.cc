@@ -273,8 +273,11 @@ void MissionFeed::readHistory() {
     if (header.kind != wire::MessageKind::kHeartbeat) return;
     const wire::Heartbeat& heartbeat = state.heartbeats().at(channel.node);
     std::map<std::string, int64_t> sent;
-    for (size_t i = 0; i < wire::Heartbeat::kNumClasses && i < comms::kNumTrafficClasses; ++i)
+    for (size_t i = 0; i < wire::Heartbeat::kNumClasses && i < comms::kNumTrafficClasses; ++i) {
+      if (comms::TrafficClass{static_cast<uint8_t>(i)} == comms::TrafficClass::kLocal)
+        continue;  // not on the link
       sent[std::string(comms::kTrafficClassNames[i])] = heartbeat.class_bytes[i];
+    }
     chronicle.hear(fusion_node::statusOf(channel.node, heartbeat, false, {}), sent);
     if (header.time.seconds() < due_s || header.time.seconds() >= last_s) return;
     keep(state, header.time.seconds());

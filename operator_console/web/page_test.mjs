@@ -34,7 +34,7 @@ try {
   assert.ok(drawn.length > 1 && drawn[0] && drawn[1], "the largest labels are on the map: " + drawn);
 
   // What is here, and why.
-  await page.locator("#map").click({ position: { x: 500, y: 400 } });
+  await page.locator("#map").click({ position: { x: 846, y: 320 } });
   await page.waitForSelector("#inspector .why table");
   assert.match(await text("#inspector"), /Why are these the same\?/i);
   assert.match(page.url(), /label=\d+/);

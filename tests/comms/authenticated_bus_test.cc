@@ -159,6 +159,13 @@ TEST_F(AuthenticatedBusTest, SealsAreInTheBudget) {
   options.bytes_per_s = kBudget;
   options.wall = wall.time();
   options.make_heartbeat = [](int64_t) { return Packet{"SHOAL_R00_HEARTBEAT", Bytes(80, 0)}; };
+  options.most_joined_bytes = 600;
+  options.join = [](std::span<const SendQueue::Next> together) -> std::optional<Packet> {
+    Packet joined{together.front().packet->channel, {}};
+    for (const SendQueue::Next& each : together)
+      joined.bytes.insert(joined.bytes.end(), each.packet->bytes.begin(), each.packet->bytes.end());
+    return joined;
+  };
   Sender sender(a_, nullptr, std::move(options));
   WindowMeter meter(kBudget);
   int64_t bytes = 0;

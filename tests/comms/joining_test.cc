@@ -91,6 +91,7 @@ TEST(JoiningTest, RepeatsTogetherToo) {
   Recorder bus;
   SenderOptions sending = options(0, 100);
   sending.queue.min_resend_interval_us = 1'000'000;
+  sending.queue.max_resends = 3;
   Sender sender(bus, nullptr, sending);
   for (int i = 0; i < 20; ++i) sender.offer(TrafficClass::kBricks, std::to_string(100 + i), packet('x', 9));
   sender.pump(0);

@@ -58,10 +58,11 @@ class Server:
 
     def ask(self, path, method="GET", body=None, headers=None, host=None):
         connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=30)
-        connection.putrequest(method, path, skip_host=True)
+        connection.putrequest(method, path, skip_host=True, skip_accept_encoding=True)
         connection.putheader("Host", host or f"127.0.0.1:{self.port}")
         for name, value in (headers or {}).items():
             connection.putheader(name, value)
+        body = body.encode() if isinstance(body, str) else body
         if body is not None:
             connection.putheader("Content-Length", str(len(body)))
         connection.endheaders(body)

@@ -25,7 +25,7 @@ Bytes readFile(const std::string& path) {
 }
 
 // Bytes before the payload, from the lengths of docs/wire.md.
-size_t fixedBytesOf(MessageKind kind) {
+size_t documentedBytesOf(MessageKind kind) {
   switch (kind) {
     case MessageKind::kHeartbeat:
       return 142;
@@ -78,7 +78,7 @@ TEST_P(GoldenTest, BytesAreThoseOfTheFile) {
 
 TEST_P(GoldenTest, FixedFieldsTakeTheDocumentedBytes) {
   const Example example = GetParam();
-  const size_t fixed = fixedBytesOf(example.kind);
+  const size_t fixed = documentedBytesOf(example.kind);
   ASSERT_GE(example.bytes.size(), fixed);
   EXPECT_EQ(bigEndian(std::span(example.bytes).subspan(fixed - 4, 4)), example.bytes.size() - fixed);
 }
@@ -96,7 +96,7 @@ TEST_P(GoldenTest, EveryTruncationIsRefused) {
 // Truncated with a length and a checksum to match: the payload ends early.
 TEST_P(GoldenTest, EveryTruncationOfThePayloadIsRefusedEvenWithALengthToMatch) {
   const Example example = GetParam();
-  const size_t fixed = fixedBytesOf(example.kind);
+  const size_t fixed = documentedBytesOf(example.kind);
   for (size_t size = fixed; size < example.bytes.size(); ++size) {
     Bytes cut(example.bytes.begin(), example.bytes.begin() + static_cast<ptrdiff_t>(size));
     setLength(cut, fixed, static_cast<uint32_t>(size - fixed));
@@ -119,7 +119,7 @@ TEST_P(GoldenTest, EveryFlippedBitIsRefused) {
 // With the checksum repaired, as an attacker would: refused, or a value that is exactly these bytes.
 TEST_P(GoldenTest, EveryFlippedBitWithARightChecksumIsRefusedOrAnotherValue) {
   const Example example = GetParam();
-  const size_t fixed = fixedBytesOf(example.kind);
+  const size_t fixed = documentedBytesOf(example.kind);
   int accepted = 0;
   for (size_t bit = 0; bit < 8 * example.bytes.size(); ++bit) {
     Bytes flipped = example.bytes;
@@ -135,7 +135,7 @@ TEST_P(GoldenTest, EveryFlippedBitWithARightChecksumIsRefusedOrAnotherValue) {
 
 TEST_P(GoldenTest, CraftedMessagesAreRefusedByReason) {
   const Example example = GetParam();
-  const size_t fixed = fixedBytesOf(example.kind);
+  const size_t fixed = documentedBytesOf(example.kind);
   const auto crafted = [&](auto change) {
     Bytes bytes = example.bytes;
     change(bytes);
@@ -176,7 +176,7 @@ TEST_P(GoldenTest, CraftedMessagesAreRefusedByReason) {
 // Payload bytes without sense behind good fields: returns, quickly, within the caps.
 TEST_P(GoldenTest, RandomPayloadsAreRefusedOrAreAValue) {
   const Example example = GetParam();
-  const size_t fixed = fixedBytesOf(example.kind);
+  const size_t fixed = documentedBytesOf(example.kind);
   Random random(5);
   for (int trial = 0; trial < 3000; ++trial) {
     Bytes bytes(example.bytes.begin(), example.bytes.begin() + static_cast<ptrdiff_t>(fixed));
