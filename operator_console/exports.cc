@@ -20,13 +20,17 @@ std::string exportFileName(const std::string& format) {
   return format == "labels" ? "labels.csv" : "map." + format;
 }
 
-std::string exported(const mapping::MissionView& view, const std::string& format) {
+std::string exported(const mapping::MissionView& view, const std::string& format,
+                     const mapping::LabelPictures& pictures) {
   const world::Grid grid(view.cell_size_m);
   if (format == "csv") return mapping::globalMapCsv(view.map, grid);
   if (format == "labels") return mapping::labelsCsv(view.map, grid);
   if (format == "geojson") return mapping::areasGeoJson(mapping::areasOf(view)).dump() + "\n";
   if (format == "ply") return globalMapPly(view.map, grid);
-  if (format == "png") return encodePng(render(view.map, grid, "mission " + std::to_string(view.mission)));
+  if (format == "png") {
+    const std::string title = "mission " + std::to_string(view.mission);
+    return encodePng(render(view.map, grid, title, {}, legendPictures(pictures)));
+  }
   std::string known;
   for (const std::string& f : exportFormats()) known += (known.empty() ? "" : ", ") + f;
   throw std::invalid_argument("\"" + format + "\" is no format of a map; " + known + " are");

@@ -86,10 +86,7 @@ void exportMap(Question& q) {
   }
   const mapping::MissionView view = viewOf(whereOf(q.asking));
   const std::string content =
-      q.format == "png" ? encodePng(render(view.map, world::Grid(view.cell_size_m),
-                                           fmt::format("mission {}", view.mission), {},
-                                           legendPictures(picturesAt(whereOf(q.asking)))))
-                        : exported(view, q.format);
+      exported(view, q.format, q.format == "png" ? picturesAt(whereOf(q.asking)) : mapping::LabelPictures{});
   mapping::writeFileAtomically(q.out, content);
   if (q.asking.json) {
     std::cout << Json{{"format", q.format}, {"file", q.out}, {"cells", view.map.cells.size()}}.dump(2)

@@ -63,7 +63,7 @@ Json nodeAnswer(const MissionView& view, const BeliefStore& beliefs, const std::
   for (const GlobalCell& c : view.map.cells) shown += robot && c.robot == *robot ? 1 : 0;
   return {{"node", toJson(*status)},
           {"now_s", seconds(now_s)},
-          {"silent_s", seconds(now_s - status->heard_s)},
+          {"silent_s", seconds(seconds(now_s) - seconds(status->heard_s))},
           {"cells_told", cells},
           {"cells_shown", shown},
           {"told_until_s", told_until ? Json(seconds(told_until->seconds())) : Json()},

@@ -11,6 +11,7 @@
 
 #include "operator_console/asking.h"
 #include "operator_console/exports.h"
+#include "operator_console/label_pictures.h"
 #include "operator_console/recorded_mission.h"
 #include "operator_console/serve/page_files.h"
 #include "shoal/mapping/area_answer.h"
@@ -96,7 +97,10 @@ HttpResponse Api::get(const HttpRequest& request) {
     const std::string* time = find(request, "at");
     const auto moment = time == nullptr ? feed_.now() : feed_.at(number(*time, "at"));
     if (!moment) return error(503, "nothing is known of the mission yet");
-    return json(path == "/api/status" ? moment->status : moment->labels);
+    if (path == "/api/status") return json(moment->status);
+    Json labels = moment->labels;
+    if (time == nullptr && where_.node.empty()) addPictures(where_, labels.at("labels"));
+    return json(labels);
   }
   if (path == "/api/tracks" || path == "/api/traffic" || path == "/api/events") {
     return json(feed_.chronicle(path.substr(5)));
@@ -111,7 +115,8 @@ HttpResponse Api::get(const HttpRequest& request) {
   if (path == "/api/diff") return diff(request);
   if (path == "/api/export") {
     const std::string format = text(request, "format");
-    HttpResponse file{.type = "application/octet-stream", .body = exported(viewOf(where_), format)};
+    const auto pictures = format == "png" ? picturesAt(where_) : mapping::LabelPictures{};
+    HttpResponse file{.type = "application/octet-stream", .body = exported(viewOf(where_), format, pictures)};
     file.file_name = exportFileName(format);
     return file;
   }

@@ -99,7 +99,7 @@ class Messages(unittest.TestCase):
                     shoal_reader.decode(bytes(m))
                 except shoal_reader.BadMessage as error:
                     refused[error.reason] += 1
-        self.assertEqual(set(refused), {"unknown format", "field out of range", "bad payload", "not canonical"})
+        self.assertEqual(set(refused), {"unknown format", "field out of range", "bad payload", "not canonical", "too short"})
 
     def test_another_format_is_refused_by_that_reason(self):
         for data in golden().values():

@@ -5,6 +5,9 @@ import struct
 from .layout import MASK, OPERATORS, STEPS
 
 
+_HALF = 2**32 - 1
+
+
 def mix(x):
     x = (x + 0x9E3779B97F4A7C15) & MASK
     x = (x ^ x >> 30) * 0xBF58476D1CE4E5B9 & MASK
@@ -64,9 +67,9 @@ def map_digest(cells, correspondences):
     """The digest of a fused map: cells {(x, y, z): (label, robot, seen_us, steps)}, [(robot, topic, label)]."""
     bits = [struct.unpack(">i", struct.pack(">f", steps / STEPS))[0] for steps in range(STEPS + 1)]
     digest = 0
-    for cell in sorted(cells):
-        label, robot, seen_us, steps = cells[cell]
-        digest = hash_of((*cell, label, robot, seen_us, bits[steps]), digest)
+    for (x, y, z), (label, robot, seen_us, steps) in cells.items():
+        own = hash_of(((x & _HALF) << 32 | y & _HALF, (z & _HALF) << 32 | robot & _HALF, seen_us, bits[steps]))
+        digest = digest + own * (mix(label) | 1) & MASK
     for entry in correspondences:
         digest = hash_of(entry, digest)
     return digest

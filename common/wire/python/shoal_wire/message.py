@@ -92,7 +92,8 @@ def repaired(m, payload):
     require(len(payload) >= own, f"{len(payload)} bytes", "too short")
     front = struct.pack(">QqiB", FINGERPRINTS[kind], m["utime"], m["mission"], FORMAT) + payload[:own]
     rest = struct.pack(">i", len(payload) - own)
-    return front + struct.pack(">H", binascii.crc_hqx(front + b"\0\0" + rest, 0xFFFF)) + rest + payload[own:]
+    rest += payload[own:]
+    return front + struct.pack(">H", binascii.crc_hqx(front + b"\0\0" + rest, 0xFFFF)) + rest
 
 
 def parse_datagram(packet):
