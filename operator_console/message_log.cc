@@ -26,9 +26,10 @@ MessageLog::MessageLog(const std::string& path, const std::string& key_file)
 std::optional<comms::LogEvent> MessageLog::next() {
   while (auto event = log_.next()) {
     if (!event->packet.channel.starts_with("SHOAL_")) return event;  // cameras, LCM's own self test
-    const bool is_sealed =
-        key_ ? comms::checkSeal(*key_, event->packet).has_value() : fusion_node::isSealed(event->packet);
-    if (is_sealed) {
+    const auto seal = key_ ? comms::checkSeal(*key_, event->packet) : std::nullopt;
+    const bool is_good = key_ ? seal && heard_.emplace(seal->session, seal->counter).second
+                              : fusion_node::isSealed(event->packet);
+    if (is_good) {
       ++seals_.sealed;
       comms::removeSeal(event->packet);
     } else if (key_) {

@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
+#include <utility>
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -23,7 +25,7 @@ struct SealCounts {
 };
 
 /// Reads a recording's messages as LogReader does, without their seals. With a key, messages on our channels
-/// that it did not seal are left out; repeated ones are not, for a state takes no harm from them.
+/// that it did not seal are left out, and those that somebody said again.
 class MessageLog {
  public:
   /// @param key_file  empty: seals are removed unseen.
@@ -39,6 +41,7 @@ class MessageLog {
   std::optional<comms::SealKey> key_;
   comms::LogReader log_;
   SealCounts seals_;
+  std::set<std::pair<uint32_t, uint32_t>> heard_;  // sessions and counters of right seals
 };
 
 }  // namespace shoal::console

@@ -106,7 +106,9 @@ Agent::Agent(const AgentOptions& options, world::ObservationSource& source, comm
                 sender.stamp = [](comms::Packet& packet, int64_t now_us) {
                   wire::stampTime(packet.bytes, {now_us});
                 };
-                sender.join = [this](std::span<const comms::SendQueue::Next> together) { return join(together); };
+                sender.join = [this](std::span<const comms::SendQueue::Next> together) {
+                  return join(together);
+                };
                 sender.most_joined_bytes =
                     mostBytes(comms::channelName(name_, wire::channelKind(wire::MessageKind::kCertainty)),
                               options.budget, bus.trailerBytes());

@@ -9,8 +9,8 @@
 
 namespace shoal::wire {
 
-/// Ln of the odds of a probability p / 65536, in units of 1/256, in [-2047, 2047]. Integers only, so that every
-/// machine computes the same.
+/// Ln of the odds of a probability p / 65536, in units of 1/256, in [-2047, 2047]. Integers only, so that
+/// every machine computes the same.
 int32_t stretch(uint32_t p);
 
 /// The inverse: 65536 / (1 + exp(-odds / 256)), from a table of 33 points and straight lines between them.

@@ -29,7 +29,8 @@ enum class MessageKind : uint8_t {
 };
 
 inline constexpr std::array<std::string_view, 11> kChannelKinds = {
-    "HEARTBEAT", "TOPICS", "BRICK", "CERTAINTY", "MATCHES", "LABELS", "MAP", "EDIT", "PICTURE", "REQUEST", "REPAIR"};
+    "HEARTBEAT", "TOPICS", "BRICK",   "CERTAINTY", "MATCHES", "LABELS",
+    "MAP",       "EDIT",   "PICTURE", "REQUEST",   "REPAIR"};
 inline constexpr size_t kNumMessageKinds = kChannelKinds.size();
 
 /// The last word of the channel a kind travels on, e.g. "TOPICS".

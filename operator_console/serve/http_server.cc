@@ -134,6 +134,12 @@ MHD_Result refuse(MHD_Connection* connection, unsigned status, const char* text)
   return result;
 }
 
+// As usual, but a NUL, which would end the path early, becomes a character that no path has.
+size_t unescaped(void* /*unused*/, MHD_Connection* /*unused*/, char* text) {
+  for (char* at = std::strstr(text, "%00"); at != nullptr; at = std::strstr(at, "%00")) at[1] = '1';
+  return MHD_http_unescape(text);
+}
+
 }  // namespace
 
 void HttpServer::Core::start() {
@@ -165,13 +171,13 @@ void HttpServer::Core::start() {
     *context = nullptr;
   };
   void (*const quiet)(void*, const char*, va_list) = [](void*, const char*, va_list) {};
-  daemon = MHD_start_daemon(MHD_USE_EPOLL_INTERNAL_THREAD | MHD_ALLOW_SUSPEND_RESUME | MHD_USE_ERROR_LOG, 0,
-                            nullptr, nullptr, access, this, MHD_OPTION_EXTERNAL_LOGGER, quiet, nullptr,
-                            MHD_OPTION_SOCK_ADDR, reinterpret_cast<sockaddr*>(&address),
-                            MHD_OPTION_CONNECTION_LIMIT, options.max_connections,
-                            MHD_OPTION_CONNECTION_TIMEOUT, options.idle_s, MHD_OPTION_CONNECTION_MEMORY_LIMIT,
-                            size_t{16} << 10, MHD_OPTION_NOTIFY_COMPLETED, completed, nullptr,
-                            MHD_OPTION_LISTENING_ADDRESS_REUSE, 1u, MHD_OPTION_END);
+  daemon = MHD_start_daemon(
+      MHD_USE_EPOLL_INTERNAL_THREAD | MHD_ALLOW_SUSPEND_RESUME | MHD_USE_ERROR_LOG, 0, nullptr, nullptr,
+      access, this, MHD_OPTION_EXTERNAL_LOGGER, quiet, nullptr, MHD_OPTION_SOCK_ADDR,
+      reinterpret_cast<sockaddr*>(&address), MHD_OPTION_CONNECTION_LIMIT, options.max_connections,
+      MHD_OPTION_CONNECTION_TIMEOUT, options.idle_s, MHD_OPTION_CONNECTION_MEMORY_LIMIT, size_t{16} << 10,
+      MHD_OPTION_NOTIFY_COMPLETED, completed, nullptr, MHD_OPTION_UNESCAPE_CALLBACK, unescaped, nullptr,
+      MHD_OPTION_LISTENING_ADDRESS_REUSE, 1u, MHD_OPTION_END);
   if (daemon == nullptr) {
     throw std::runtime_error("cannot listen on " + options.host + ":" + std::to_string(options.port) +
                              "; is the port taken? --port chooses another, 0 any free one");

@@ -96,7 +96,8 @@ TEST(LaunchTest, NamesTheLineOfAKillPlanThatIsWrong) {
   const std::string fly = "launch --world reef:sparse --robots 2 --out " + folder + "/run --kill-plan ";
   expectRefusal(fly + plan, plan);
   const std::pair<const char*, const char*> cases[] = {
-      {"# nothing\n\n3 R00 crash\n", ":3: \"3 R00 crash\" should be `t_s ROBOT kill`, `t_s ROBOT restart` or `t_s ROBOT anew`"},
+      {"# nothing\n\n3 R00 crash\n",
+       ":3: \"3 R00 crash\" should be `t_s ROBOT kill`, `t_s ROBOT restart` or `t_s ROBOT anew`"},
       {"soon R00 kill\n", ":1: \"soon R00 kill\" should be"},
       {"-1 R00 kill\n", ":1: the time must lie in [0, 1000000] s"},
       {"3 OPERATOR kill\n", ":1: OPERATOR is none of this mission's robots, R00 to R01"},

@@ -122,7 +122,8 @@ std::vector<comms::Packet> packetsOfRobots(Random& random) {
         for (const Piece& part : cutToFit(whole, kMaxBytes)) {
           packets.push_back(packetOf(part, 1'000'000 * observation));
           const bool is_layer = part.key.kind == mapping::PieceKind::kPicture;
-          if (part.part == 0 && part.num_parts > 1 && !is_layer) {  // a newer version of which this part is never heard
+          if (part.part == 0 && part.num_parts > 1 &&
+              !is_layer) {  // a newer version of which this part is never heard
             Piece newer = part;
             newer.version.observation = 60;
             newer.part = 1;
