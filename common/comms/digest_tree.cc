@@ -9,8 +9,8 @@ namespace shoal::comms {
 
 DigestTree::DigestTree(std::vector<Leaf> leaves) : leaves_(std::move(leaves)) {
   std::ranges::stable_sort(leaves_, {}, &Leaf::key);
-  const auto repeated = std::ranges::unique(leaves_, {}, &Leaf::key);
-  leaves_.erase(repeated.begin(), repeated.end());
+  const auto same = [](const Leaf& a, const Leaf& b) { return a.key == b.key; };
+  leaves_.erase(std::unique(leaves_.begin(), leaves_.end(), same), leaves_.end());
   SHOAL_DEMAND(leaves_.empty() || leaves_.back().key < uint64_t{1} << kKeyBits);
   before_.reserve(leaves_.size() + 1);
   before_.push_back(0);

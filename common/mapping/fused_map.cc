@@ -30,8 +30,8 @@ std::vector<BrickCell> labelledCells(const BeliefStore& beliefs, world::RobotId 
   });
   const auto order = [](const BrickCell& c) { return std::tuple(c.cell.z, c.cell.x, c.cell.y, -c.seen.us); };
   if (!std::ranges::is_sorted(cells, {}, order)) std::ranges::stable_sort(cells, {}, order);
-  const auto repeated = std::ranges::unique(cells, {}, &BrickCell::cell);
-  cells.erase(repeated.begin(), repeated.end());
+  const auto same = [](const BrickCell& a, const BrickCell& b) { return a.cell == b.cell; };
+  cells.erase(std::unique(cells.begin(), cells.end(), same), cells.end());
   return cells;
 }
 

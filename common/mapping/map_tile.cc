@@ -19,8 +19,7 @@ uint16_t placeOf(const std::vector<T>& ascending, const T& value) {
 template <class T>
 void makeAscending(std::vector<T>& values) {
   std::ranges::sort(values);
-  const auto repeated = std::ranges::unique(values);
-  values.erase(repeated.begin(), repeated.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
 }
 
 }  // namespace

@@ -54,8 +54,8 @@ StackedTopics stack(const BeliefStore& beliefs, const std::set<world::RobotId>& 
   for (auto& [key, topic] : heard) {
     // Honest parts share no word. Of others the first count stands.
     if (!std::ranges::is_sorted(topic.words)) std::ranges::sort(topic.words);
-    const auto repeated = std::ranges::unique(topic.words, {}, &world::WordCount::word);
-    topic.words.erase(repeated.begin(), repeated.end());
+    const auto same = [](const world::WordCount& a, const world::WordCount& b) { return a.word == b.word; };
+    topic.words.erase(std::unique(topic.words.begin(), topic.words.end(), same), topic.words.end());
     topic.cells = cells.contains(key) ? cells.at(key) : 0;
     stacked.topics.push_back(std::move(topic));
   }

@@ -49,7 +49,7 @@ std::vector<int> choose(const std::vector<int>& groups, const std::vector<Place>
     for (const int column : taken[static_cast<size_t>(r)])
       if (column < num_columns) cost(r, column) = taken_cost;
   }
-  const std::vector<int> chosen = assign(cost);
+  std::vector<int> chosen = assign(cost);
   for (size_t r = 0; r < chosen.size(); ++r)
     SHOAL_DEMAND(chosen[r] >= num_columns || !taken[r].contains(chosen[r]));
   return chosen;

@@ -53,8 +53,7 @@ Contraction contract(int n, const PairConstraints& constraints) {
     result.apart.emplace_back(g, h);
   }
   std::ranges::sort(result.apart);
-  const auto repeated = std::ranges::unique(result.apart);
-  result.apart.erase(repeated.begin(), repeated.end());
+  result.apart.erase(std::unique(result.apart.begin(), result.apart.end()), result.apart.end());
   return result;
 }
 
@@ -130,8 +129,7 @@ Conflicts::Conflicts(const Contraction& contraction, std::span<const int> owner)
   }
   for (std::vector<int>& others : of_) {
     std::ranges::sort(others);
-    const auto repeated = std::ranges::unique(others);
-    others.erase(repeated.begin(), repeated.end());
+    others.erase(std::unique(others.begin(), others.end()), others.end());
   }
 }
 

@@ -16,7 +16,8 @@ struct Square {
   int edge = 0;
   std::vector<int32_t> values = {};
 
-  explicit Square(int edge_in) : edge(edge_in), values(static_cast<size_t>(edge_in) * edge_in) {}
+  explicit Square(int edge_in)
+      : edge(edge_in), values(static_cast<size_t>(edge_in) * static_cast<size_t>(edge_in)) {}
   int32_t& at(int x, int y) { return values[static_cast<size_t>(y * edge + x)]; }
   int32_t at(int x, int y) const { return values[static_cast<size_t>(y * edge + x)]; }
 };

@@ -19,7 +19,7 @@ namespace {
 using shoal::wire::Bytes;
 using shoal::wire::MessageKind;
 
-size_t fixedBytesOf(MessageKind kind) {
+size_t documentedBytesOf(MessageKind kind) {
   for (const auto& example : shoal::wire::goldenExamples()) {
     if (example.kind != kind) continue;
     for (size_t fixed = 27; fixed < example.bytes.size(); ++fixed) {  // where the length that fits stands
@@ -41,7 +41,7 @@ void put(Bytes& bytes, size_t at, uint64_t value, int num_bytes) {
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   static const auto kFixed = [] {
     std::array<size_t, shoal::wire::kNumMessageKinds> fixed{};
-    for (size_t k = 0; k < fixed.size(); ++k) fixed[k] = fixedBytesOf(static_cast<MessageKind>(k));
+    for (size_t k = 0; k < fixed.size(); ++k) fixed[k] = documentedBytesOf(static_cast<MessageKind>(k));
     return fixed;
   }();
   if (size < 8) return 0;
