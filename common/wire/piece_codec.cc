@@ -156,13 +156,13 @@ Result<std::vector<Piece>> decodeCells(std::span<const uint8_t> bytes, PieceKind
 Result<std::vector<Piece>> decodeEdits(std::span<const uint8_t> bytes) {
   auto edit = decodeEdit(bytes);
   if (!edit) return edit.error();
-  return std::vector{std::move(*edit)};
+  return std::vector{*edit};
 }
 
 Result<std::vector<Piece>> decodePictures(std::span<const uint8_t> bytes) {
   auto picture = decodePictureMessage(bytes);
   if (!picture) return picture.error();
-  return std::vector{std::move(*picture)};
+  return std::vector{*picture};
 }
 
 size_t numCells(const Piece& piece) {

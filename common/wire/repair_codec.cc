@@ -67,7 +67,7 @@ Result<mapping::Piece> decodeRepair(std::span<const uint8_t> bytes) {
   auto pieces = decodePieces(*kind, whole);
   if (!pieces) return pieces.error();
   if (pieces->size() != 1) return DecodeError::kBadField;
-  return std::move(pieces->front());
+  return pieces->front();
 }
 
 Bytes encodeRequest(std::span<const uint8_t> talk, int32_t mission, world::Timestamp time) {
@@ -80,7 +80,7 @@ Bytes encodeRequest(std::span<const uint8_t> talk, int32_t mission, world::Times
 Result<Bytes> decodeRequest(std::span<const uint8_t> bytes) {
   auto message = unpack<request_t>(bytes);
   if (!message) return message.error();
-  return std::move(message->payload);
+  return message->payload;
 }
 
 }  // namespace shoal::wire
