@@ -25,20 +25,22 @@ cv::Size pictureSize(const fs::path& file, const json& world) {
           integer(file, (*size)[1], 1, kMaxSide, "size_px[1]")};
 }
 
-cv::Mat readPicture(const fs::path& file, int flags, const cv::Size& size) {
+// The picture that the world's file names; errors name both, since a picture may lie in another folder.
+cv::Mat readPicture(const fs::path& file, const fs::path& world_file, int flags, const cv::Size& size) {
+  const std::string named_by = ", but " + world_file.string() + " names it";
   std::error_code error;
-  if (!fs::is_regular_file(file, error)) refuse(file, "not found, but world.json names it");
+  if (!fs::is_regular_file(file, error)) refuse(file, "not found" + named_by);
   cv::Mat picture;
   try {
     picture = cv::imread(file.string(), flags | cv::IMREAD_IGNORE_ORIENTATION);
   } catch (const cv::Exception& e) {
-    refuse(file, "cannot be decoded: " + e.msg);
+    refuse(file, "cannot be decoded" + named_by + ": " + e.msg);
   }
-  if (picture.empty()) refuse(file, "is no picture that can be decoded");
+  if (picture.empty()) refuse(file, "is no picture that can be decoded" + named_by);
   if (picture.size() != size) {
     refuse(file, "is " + std::to_string(picture.cols) + " x " + std::to_string(picture.rows) +
-                     " pixels, but size_px in world.json says " + std::to_string(size.width) + " x " +
-                     std::to_string(size.height));
+                     " pixels, but size_px in " + world_file.string() + " says " +
+                     std::to_string(size.width) + " x " + std::to_string(size.height));
   }
   return picture;
 }
@@ -66,16 +68,16 @@ std::unique_ptr<OrthoWorld> readWorldFolder(const fs::path& folder) {
   if (labelled) {
     classes = truthClasses(file, world);
     const fs::path labels_file = folder / text(file, world, "labels", "the file name of the label picture");
-    labels = readPicture(labels_file, cv::IMREAD_UNCHANGED, size);
+    labels = readPicture(labels_file, file, cv::IMREAD_UNCHANGED, size);
     if (labels.type() != CV_8UC1)
-      refuse(labels_file, "must have one channel of 8 bits: a class id per pixel");
+      refuse(file, labels_file.string() + " must have one channel of 8 bits: a class id per pixel");
   }
-  cv::Mat color = readPicture(folder / image, cv::IMREAD_COLOR, size);
+  cv::Mat color = readPicture(folder / image, file, cv::IMREAD_COLOR, size);
   try {
     return std::make_unique<OrthoWorld>(name, std::move(color), std::move(labels), scale.get<double>(),
                                         std::move(classes));
   } catch (const std::invalid_argument& e) {
-    refuse(labelled ? folder / world["labels"].get<std::string>() : file, e.what());
+    refuse(file, (labelled ? (folder / world["labels"].get<std::string>()).string() + ": " : "") + e.what());
   }
 }
 
