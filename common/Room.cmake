@@ -13,6 +13,12 @@ function(shoal_add_room)
   target_link_libraries(shoal_${ROOM_NAME} PUBLIC ${ROOM_PUBLIC} shoal::base PRIVATE ${ROOM_PRIVATE})
 endfunction()
 
+# Compiles the target's files ten at a time: templates of json and CLI11 take most of each file's time. Names in anonymous
+# namespaces must then differ within a target.
+function(shoal_compile_together target)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 10)
+endfunction()
+
 # shoal_add_test(NAME matching SOURCES a_test.cc ... LINK shoal::matching ... [TIMEOUT s] [LABELS l]
 # [ENVIRONMENT K=V]): one executable of GoogleTest cases, each its own ctest entry with a time limit.
 function(shoal_add_test)

@@ -5,11 +5,12 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include "fusion_node/limits.h"
+
 namespace shoal::fusion_node {
 namespace {
 
 constexpr size_t kMaxEvents = 5000;
-constexpr size_t kMaxNodes = 300;
 constexpr size_t kMaxTold = 1000;
 constexpr double kLostAfterS = 10;
 constexpr double kHeartbeatBytes = 250;

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "fusion_node/authentication.h"
+#include "fusion_node/limits.h"
 #include "shoal/comms/channels.h"
 #include "shoal/wire/message_kind.h"
 #include "shoal/wire/piece_codec.h"
@@ -12,8 +13,6 @@
 namespace shoal::fusion_node {
 namespace {
 
-// A hostile peer must not make us remember without end.
-constexpr size_t kMaxNodes = 300;
 constexpr size_t kMaxOtherMissions = 16;
 
 std::string_view phaseName(wire::Phase phase) {

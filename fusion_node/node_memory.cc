@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <string_view>
 
+#include "fusion_node/limits.h"
 #include "shoal/comms/channels.h"
 #include "shoal/comms/log_reader.h"
 #include "shoal/mapping/atomic_file.h"
@@ -17,7 +18,6 @@ namespace {
 
 constexpr uint64_t kLeastRewriteBytes = 4'000'000;
 constexpr int64_t kHeartbeatEveryUs = 10'000'000;
-constexpr size_t kMaxNodes = 300;
 
 int64_t wallUs() {
   return std::chrono::duration_cast<std::chrono::microseconds>(

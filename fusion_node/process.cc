@@ -11,7 +11,7 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
-#include "shoal/random.h"
+#include "shoal/text_hash.h"
 
 namespace shoal::fusion_node {
 namespace {
@@ -19,12 +19,6 @@ namespace {
 volatile std::sig_atomic_t stop_requested = 0;
 
 void onStopSignal(int) { stop_requested = 1; }
-
-uint64_t hashOf(const std::string& text) {
-  uint64_t hash = text.size();
-  for (const char c : text) hash = hashCombine(hash, static_cast<uint8_t>(c));
-  return hash;
-}
 
 }  // namespace
 
@@ -54,13 +48,13 @@ int32_t missionId(const std::string& text) {
   int32_t number = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error == std::errc{} && end == text.data() + text.size() && number > 0) return number;
-  return static_cast<int32_t>(hashOf(text) % 0x7fffffffu) + 1;
+  return static_cast<int32_t>(hashText(text) % 0x7fffffffu) + 1;
 }
 
 int32_t hostHash() {
   std::array<char, 256> host{};
   ::gethostname(host.data(), host.size() - 1);
-  return static_cast<int32_t>(hashOf(host.data()) & 0x7fffffffu);
+  return static_cast<int32_t>(hashText(host.data()) & 0x7fffffffu);
 }
 
 double parseRate(const std::string& text) {

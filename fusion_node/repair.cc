@@ -3,8 +3,10 @@
 
 #include <algorithm>
 
+#include "fusion_node/limits.h"
 #include "shoal/comms/channels.h"
 #include "shoal/random.h"
+#include "shoal/text_hash.h"
 #include "shoal/wire/message_kind.h"
 #include "shoal/wire/repair_codec.h"
 
@@ -15,7 +17,6 @@ constexpr int64_t kSecondUs = 1'000'000;
 constexpr int64_t kLatelyUs = 60 * kSecondUs;
 constexpr int64_t kDatagramBytes = 700;
 constexpr int kMostTalksPerSecond = 20;  // of one sender
-constexpr size_t kMaxNodes = 300;
 
 // More of either would only wait in the queue, where nobody takes it back when somebody else has said it.
 constexpr size_t kMaxWaitingRepairs = 2;
@@ -23,12 +24,6 @@ constexpr size_t kMaxWaitingUnlimited = 32;
 
 // How long nobody who fuses has what we hold before we say so.
 constexpr int64_t kUnmetUs = 15 * kSecondUs;
-
-uint64_t hashOf(std::string_view text) {
-  uint64_t hash = text.size();
-  for (const char c : text) hash = hashCombine(hash, static_cast<uint8_t>(c));
-  return hash;
-}
 
 std::string repairKey(const comms::AntiEntropy::PieceName& piece) {
   return "repair/" + std::to_string(piece.first) + "/" + std::to_string(piece.second);
@@ -43,7 +38,7 @@ const wire::Heartbeat::Share* shareOf(const wire::Heartbeat& node, world::RobotI
 
 comms::AntiEntropyOptions talkOptions(const RepairOptions& options) {
   comms::AntiEntropyOptions talk;
-  talk.seed = hashCombine(static_cast<uint64_t>(options.mission), hashOf(options.node));
+  talk.seed = hashCombine(static_cast<uint64_t>(options.mission), hashText(options.node));
   talk.own_share = options.own_share;
   if (options.budget > 0) {
     talk.unit_us = std::max(kSecondUs, kSecondUs * kDatagramBytes / options.budget);

@@ -21,7 +21,7 @@ struct AreaQuestion {
   bool csv = false, geojson = false;
 };
 
-void printTable(const Json& a) {
+void printPatches(const Json& a) {
   const std::string name = a["name"];
   fmt::print("label {}{}: {:.1f} m2 in {} patch{}\n", a["label"].get<int>(),
              name.empty() ? "" : " \"" + name + "\"", a["area_m2"].get<double>(), a["patches"].size(),
@@ -54,7 +54,7 @@ int area(const AreaQuestion& q) {
   } else if (q.geojson) {
     std::cout << mapping::areasGeoJson(Json::array({a})).dump() << '\n';
   } else {
-    printTable(a);
+    printPatches(a);
   }
   return 0;
 }

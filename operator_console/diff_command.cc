@@ -23,7 +23,7 @@ struct DiffQuestion {
   bool csv = false;
 };
 
-void printTable(const Json& d) {
+void printChanges(const Json& d) {
   fmt::print("from {:.1f} s to {:.1f} s: {} cells, then {}\n", d["before_s"].get<double>(),
              d["after_s"].get<double>(), d["cells_before"].get<int64_t>(), d["cells_after"].get<int64_t>());
   const auto row = [](const std::string& who, const Json& c) {
@@ -57,7 +57,7 @@ int diff(const DiffQuestion& q) {
   } else if (q.csv) {
     std::cout << mapping::diffCsv(d);
   } else {
-    printTable(d);
+    printChanges(d);
   }
   return 0;
 }

@@ -15,6 +15,7 @@
 #include "shoal/eval/team_learning.h"
 #include "shoal/eval/topic_tally.h"
 #include "shoal/mapping/atomic_file.h"
+#include "shoal/rounded.h"
 #include "shoal/world/place.h"
 
 namespace shoal::console {
@@ -22,19 +23,17 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-double rounded(double value) { return std::round(value * 1e6) / 1e6; }
-
 // null where nothing is compared with it.
 Json sigmaOf(const matching::MatcherOptions& m) {
   return matching::usesSigma(m.matcher) ? Json(m.leastSimilarity()) : Json(nullptr);
 }
 
-struct Flags {
+struct EvaluateFlags {
   std::string run, world, matcher = "all", similarity, sigma = "auto";
   bool json = false, explain = false;
 };
 
-void evaluate(const Flags& flags) {
+void evaluate(const EvaluateFlags& flags) {
   const Json summary = [&] {
     try {
       return Json::parse(mapping::readFile(flags.run + "/summary.json"));
@@ -69,17 +68,17 @@ void evaluate(const Flags& flags) {
 
 Json Evaluation::json() const {
   const eval::Score& first = scores.at(0);
-  Json result{{"cells", first.cells},       {"scored", first.scored},   {"coverage", rounded(coverage)},
+  Json result{{"cells", first.cells},       {"scored", first.scored},   {"coverage", rounded(coverage, 1e6)},
               {"cell_size_m", cell_size_m}, {"classes", first.classes}, {"matchers", Json::object()}};
   for (size_t i = 0; i < scores.size(); ++i) {
     result["matchers"][matchers[i].matcher] = {
-        {"ami", rounded(scores[i].ami)}, {"ami_concatenated", rounded(ami_concatenated[i])},
-        {"nmi", rounded(scores[i].nmi)}, {"labels", scores[i].labels},
-        {"sigma", sigmaOf(matchers[i])}, {"similarity", matchers[i].similarity}};
+        {"ami", rounded(scores[i].ami, 1e6)}, {"ami_concatenated", rounded(ami_concatenated[i], 1e6)},
+        {"nmi", rounded(scores[i].nmi, 1e6)}, {"labels", scores[i].labels},
+        {"sigma", sigmaOf(matchers[i])},      {"similarity", matchers[i].similarity}};
   }
   if (single)
     result["single"] = {
-        {"ami", rounded(single->ami)}, {"nmi", rounded(single->nmi)}, {"labels", single->labels}};
+        {"ami", rounded(single->ami, 1e6)}, {"nmi", rounded(single->nmi, 1e6)}, {"labels", single->labels}};
   if (explanation) result["explanation"] = explanationJson(*explanation, truth.classes);
   return result;
 }
@@ -157,7 +156,7 @@ std::string scoreTable(const Evaluation& e) {
 
 void addEvaluateCommand(CLI::App& app, Action& chosen) {
   CLI::App* command = app.add_subcommand("evaluate", "score a finished mission against its world");
-  const auto flags = std::make_shared<Flags>();
+  const auto flags = std::make_shared<EvaluateFlags>();
   command->add_option("--run", flags->run, "folder of the mission")->required();
   command->add_option("--world", flags->world, "the world it was flown over")->required();
   command

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "operator_console/explain.h"
+#include "shoal/rounded.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,8 +26,6 @@ std::string className(const std::vector<world::TruthClass>& classes, int id) {
 double percent(int64_t part, int64_t whole) {
   return whole == 0 ? 0.0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole);
 }
-
-double rounded(double value) { return std::round(value * 1e6) / 1e6; }
 
 }  // namespace
 
@@ -72,8 +71,8 @@ Json explanationJson(const eval::Explanation& e, const std::vector<world::TruthC
     robots.push_back({{"robot", world::name(r.robot)},
                       {"topics", r.topics},
                       {"cells", r.cells},
-                      {"purity", rounded(r.purity)},
-                      {"ami", rounded(r.ami)}});
+                      {"purity", rounded(r.purity, 1e6)},
+                      {"ami", rounded(r.ami, 1e6)}});
   }
   for (const eval::Explanation::Label& label : e.labels) {
     Json holds = Json::object();
@@ -91,10 +90,10 @@ Json explanationJson(const eval::Explanation& e, const std::vector<world::TruthC
                           {"taken_for", className(classes, c.taken_for)},
                           {"cells", c.cells}});
   }
-  return {{"ami", rounded(e.fused.ami)},
-          {"oracle_ami", rounded(e.oracle.ami)},
-          {"topic_purity", rounded(e.purity)},
-          {"label_purity", rounded(e.label_purity)},
+  return {{"ami", rounded(e.fused.ami, 1e6)},
+          {"oracle_ami", rounded(e.oracle.ami, 1e6)},
+          {"topic_purity", rounded(e.purity, 1e6)},
+          {"label_purity", rounded(e.label_purity, 1e6)},
           {"robots", robots},
           {"labels", labels},
           {"confusions", confusions}};

@@ -10,7 +10,7 @@
 namespace shoal::console {
 namespace {
 
-struct Flags {
+struct LaunchFlags {
   LaunchOptions launch;
   std::string sigma = "auto";
   std::string similarity;  // empty: the one that goes with the matcher
@@ -20,7 +20,7 @@ struct Flags {
 
 void addLaunchCommand(CLI::App& app, Action& chosen) {
   CLI::App* command = app.add_subcommand("launch", "fly a mission on this computer and end when all agree");
-  const auto flags = std::make_shared<Flags>();
+  const auto flags = std::make_shared<LaunchFlags>();
   LaunchOptions& o = flags->launch;
   command->add_option("--world", o.world,
                       "reef:sparse, reef:varied, reef:tuning, a world folder, or a recording");
@@ -51,6 +51,10 @@ void addLaunchCommand(CLI::App& app, Action& chosen) {
                    "least similarity of a match: auto (the matcher's usual) or a number in (0, 1]")
       ->capture_default_str();
   command->add_option("--profile", o.profile, "words and hyper-parameters: best or paper")
+      ->capture_default_str();
+  command
+      ->add_option("--detail", o.detail,
+                   "of topics and certainties on the link: fine, or coarse for fewer bytes")
       ->capture_default_str();
   command->add_option("--cell-size-m", o.cell_size_m, "edge of a cell, m (default: the world's)");
   command->add_option("--camera", o.camera, "camera.json with the intrinsics (default: the world's usual)");

@@ -8,6 +8,7 @@
 #include "shoal/comms/lcm_url.h"
 #include "shoal/comms/link_model.h"
 #include "shoal/comms/seal.h"
+#include "shoal/mapping/local_belief.h"
 
 namespace shoal::console {
 namespace {
@@ -39,6 +40,9 @@ void check(const LaunchOptions& options) {
   if (!options.key.empty()) comms::SealKey::read(options.key);
   if (options.profile != "best" && options.profile != "paper") {
     throw std::invalid_argument("--profile must be best or paper, got \"" + options.profile + "\"");
+  }
+  if (!mapping::parseDetail(options.detail)) {
+    throw std::invalid_argument("--detail must be fine or coarse, got \"" + options.detail + "\"");
   }
   matching::check(options.matcher);
   fusion_node::parseRate(options.rate);

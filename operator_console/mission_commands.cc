@@ -35,6 +35,7 @@ std::vector<std::string> flightArguments(const LaunchOptions& options) {
                                         "--observations",   std::to_string(options.observations),
                                         "--seed",           std::to_string(options.seed),
                                         "--profile",        options.profile,
+                                        "--detail",         options.detail,
                                         "--cell-size-m",    text(options.cell_size_m),
                                         "--frame-period-s", text(options.frame_period_s),
                                         "--log-level",      options.log_level};

@@ -16,11 +16,11 @@
 namespace shoal::console {
 namespace {
 
-struct Flags {
+struct PlayFlags {
   std::string folder, prefix = "CAM", rate = "1", lcm_url = comms::kDefaultUrl;
 };
 
-int playFolder(const Flags& flags) {
+int playFolder(const PlayFlags& flags) {
   comms::LcmBusOptions options;
   options.channels = comms::CameraChannels(flags.prefix).all();
   options.max_message_bytes = wire::kMaxCameraBytes;
@@ -39,7 +39,7 @@ int playFolder(const Flags& flags) {
 void addPlayCommand(CLI::App& app, Action& chosen) {
   CLI::App* command = app.add_subcommand(
       "play", "say on LCM what a real robot's cameras would, for robot_agent --source lcm:PREFIX");
-  const auto flags = std::make_shared<Flags>();
+  const auto flags = std::make_shared<PlayFlags>();
   command->add_option("folder", flags->folder, "one robot's RGB-D folder in TUM layout")->required();
   command->add_option("--prefix", flags->prefix, "of the channels")->capture_default_str();
   command->add_option("--rate", flags->rate, "recorded seconds per wall second: 1, 10, or max")

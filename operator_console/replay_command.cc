@@ -11,13 +11,13 @@
 namespace shoal::console {
 namespace {
 
-struct Flags {
+struct ReplayFlags {
   std::string log, out, key, sigma = "auto", similarity;
   matching::MatcherOptions matcher = matching::usualMatcher();
   bool json = false;
 };
 
-int run(Flags flags) {
+int run(ReplayFlags flags) {
   flags.matcher.sigma = matching::parseSigma(flags.sigma);
   flags.matcher.similarity =
       flags.similarity.empty() ? matching::usualSimilarity(flags.matcher.matcher) : flags.similarity;
@@ -30,7 +30,7 @@ int run(Flags flags) {
 
 void addReplayCommand(CLI::App& app, Action& chosen) {
   CLI::App* command = app.add_subcommand("replay", "rebuild a mission's map from its recording alone");
-  const auto flags = std::make_shared<Flags>();
+  const auto flags = std::make_shared<ReplayFlags>();
   command->add_option("log", flags->log, "a recording made by lcm-logger")->required();
   command->add_option("--out", flags->out, "folder for the map's files")->required();
   command

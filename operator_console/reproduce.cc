@@ -28,7 +28,7 @@ namespace shoal::console {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
+using PlainJson = nlohmann::json;
 
 void demandNotStopped() {
   if (stopSignal() != 0) {
@@ -138,9 +138,9 @@ class Experiment {
   }
 
   // A finished piece of work from an earlier run; nothing when there is none, or of other options.
-  std::optional<Json> kept(const std::string& path, const std::string& key) const {
+  std::optional<PlainJson> kept(const std::string& path, const std::string& key) const {
     if (!fs::exists(path)) return std::nullopt;
-    Json json = Json::parse(mapping::readFile(path), nullptr, false);
+    PlainJson json = PlainJson::parse(mapping::readFile(path), nullptr, false);
     if (json.is_discarded() || !json.is_object() || json.value("key", "") != key) return std::nullopt;
     return json;
   }
@@ -154,7 +154,7 @@ class Experiment {
       demandNotStopped();
       eval::Repeat& repeat = result_.repeats[static_cast<size_t>(r)];
       const std::string path = fmt::format("{}/repeats/{}-{:03}.json", options_.out, name_, r);
-      if (const std::optional<Json> json = kept(path, key)) {
+      if (const std::optional<PlainJson> json = kept(path, key)) {
         json->at("repeat").get_to(repeat);
       } else {
         repeat = eval::runRepeat(words, {.learning = learning(r),
@@ -162,7 +162,7 @@ class Experiment {
                                          .repeat = r,
                                          .exchange_every = options_.exchange_every,
                                          .measure_bytes = r == 0});
-        mapping::writeFileAtomically(path, Json{{"key", key}, {"repeat", repeat}}.dump());
+        mapping::writeFileAtomically(path, PlainJson{{"key", key}, {"repeat", repeat}}.dump());
         spdlog::debug("{}, repeat {}: {:.1f} s", result_.world, r, repeat.seconds);
       }
       ++done;
@@ -189,12 +189,12 @@ class Experiment {
     eval::forEachInParallel(repeats, [&](int r) {
       demandNotStopped();
       std::vector<double>& ami = result.ami[static_cast<size_t>(r)];
-      if (const std::optional<Json> json = kept(pathOf(r), key)) {
+      if (const std::optional<PlainJson> json = kept(pathOf(r), key)) {
         json->at("ami").get_to(ami);
       } else {
         for (const eval::Score& s : eval::scoreTeam(words ? *words : whole, learning(r), matchers_))
           ami.push_back(s.ami);
-        mapping::writeFileAtomically(pathOf(r), Json{{"key", key}, {"ami", ami}}.dump());
+        mapping::writeFileAtomically(pathOf(r), PlainJson{{"key", key}, {"ami", ami}}.dump());
       }
       ++done;
     });

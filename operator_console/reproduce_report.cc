@@ -13,6 +13,7 @@
 #include "operator_console/line_plot.h"
 #include "shoal/eval/statistics.h"
 #include "shoal/mapping/atomic_file.h"
+#include "shoal/rounded.h"
 #include "shoal/version.h"
 
 namespace shoal::console {
@@ -298,10 +299,10 @@ std::string html(const Reproduction& all) {
   return page + "</body></html>\n";
 }
 
-double rounded(double value) { return std::round(value * 1e6) / 1e6; }
-
 Json toJson(const eval::Summary& s) {
-  return {{"mean", rounded(s.mean)}, {"deviation", rounded(s.deviation)}, {"margin95", rounded(s.margin)}};
+  return {{"mean", rounded(s.mean, 1e6)},
+          {"deviation", rounded(s.deviation, 1e6)},
+          {"margin95", rounded(s.margin, 1e6)}};
 }
 
 }  // namespace
@@ -318,7 +319,7 @@ Json summaryOf(const Reproduction& all) {
       rows.push_back({{"matcher", row.name},
                       {"ami", toJson(row.newest)},
                       {"ami_concatenated", toJson(row.concatenated)},
-                      {"labels", rounded(row.labels.mean)},
+                      {"labels", rounded(row.labels.mean, 1e6)},
                       {"paper", published(world.world, row.name)}});
     }
     const eval::Repeat& first = world.repeats[0];
@@ -335,7 +336,7 @@ Json summaryOf(const Reproduction& all) {
           {{"topics", std::llround(first.topics_bytes)}, {"map", std::llround(first.map_bytes)}}},
          {"merged_bytes_per_robot",
           {{"sent", std::llround(first.merged_sent)}, {"received", std::llround(first.merged_received)}}},
-         {"seconds", rounded(world.seconds)}});
+         {"seconds", rounded(world.seconds, 1e6)}});
   }
   return json;
 }

@@ -11,6 +11,7 @@
 #include "operator_console/command.h"
 #include "operator_console/evaluate.h"
 #include "shoal/mapping/atomic_file.h"
+#include "shoal/rounded.h"
 #include "shoal/world/place.h"
 
 namespace shoal::console {
@@ -18,7 +19,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Flags {
+struct ScoreFlags {
   Asking asking;
   std::string world;
   uint64_t seed = 1;
@@ -26,11 +27,9 @@ struct Flags {
   int32_t observations = 0;
 };
 
-double rounded(double value) { return std::round(value * 1e6) / 1e6; }
-
 // How the team flies, as far as it is known: what a run's summary says, else what its robots say. It matters
 // where the truth is projected from the frames that the team sees.
-world::SurveyOptions teamAsFlown(const Flags& flags, const mapping::MissionView& view,
+world::SurveyOptions teamAsFlown(const ScoreFlags& flags, const mapping::MissionView& view,
                                  const world::Place& place) {
   if (!flags.asking.where.run.empty()) {
     return teamOf(Json::parse(mapping::readFile(flags.asking.where.run + "/summary.json")));
@@ -48,7 +47,7 @@ world::SurveyOptions teamAsFlown(const Flags& flags, const mapping::MissionView&
   return place.completed(team);
 }
 
-int score(const Flags& flags) {
+int score(const ScoreFlags& flags) {
   const mapping::MissionView view = viewOf(whereOf(flags.asking));
   uint64_t seed = flags.seed;
   std::optional<world::Camera> camera;
@@ -66,8 +65,8 @@ int score(const Flags& flags) {
   for (const mapping::GlobalCell& c : view.map.cells) labels.emplace_back(c.cell, number(c.label));
   const eval::Score s = eval::score(labels, truth);
   if (flags.asking.json) {
-    std::cout << Json{{"cells", s.cells},     {"scored", s.scored},    {"labels", s.labels},
-                      {"classes", s.classes}, {"ami", rounded(s.ami)}, {"nmi", rounded(s.nmi)}}
+    std::cout << Json{{"cells", s.cells},     {"scored", s.scored},         {"labels", s.labels},
+                      {"classes", s.classes}, {"ami", rounded(s.ami, 1e6)}, {"nmi", rounded(s.nmi, 1e6)}}
                      .dump(2)
               << '\n';
   } else {
@@ -82,7 +81,7 @@ int score(const Flags& flags) {
 void addScoreCommand(CLI::App& app, Action& chosen) {
   CLI::App* command =
       app.add_subcommand("score", "score the map as it is held now, edits and all, against its world");
-  const auto flags = std::make_shared<Flags>();
+  const auto flags = std::make_shared<ScoreFlags>();
   addWhere(*command, flags->asking);
   command->add_option("--world", flags->world, "the world it is flown over")->required();
   command->add_option("--seed", flags->seed, "of the mission, for --node and --log")->capture_default_str();

@@ -10,6 +10,7 @@
 #include "fusion_node/authentication.h"
 #include "operator_console/terminal.h"
 #include "shoal/comms/channels.h"
+#include "shoal/rounded.h"
 #include "shoal/wire/heartbeat_codec.h"
 #include "shoal/wire/message_json.h"
 #include "shoal/wire/message_kind.h"
@@ -26,8 +27,6 @@ constexpr double kWindowS = 10;
 constexpr size_t kFieldColumns = 58;
 constexpr size_t kShownItems = 6;       // of a list
 constexpr size_t kMaxKept = 64 * 1024;  // bytes of a message that is kept to be decoded
-
-double rounded(double value, double per_unit) { return std::round(value * per_unit) / per_unit; }
 
 // Long lists end where a person stops reading.
 void shorten(Json& json) {

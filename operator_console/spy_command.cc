@@ -17,13 +17,13 @@
 namespace shoal::console {
 namespace {
 
-struct Flags {
+struct SpyFlags {
   std::string lcm_url = comms::kDefaultUrl, log, channel;
   bool once = false, json = false;
   double seconds = 3;
 };
 
-bool show(const Flags& flags, const Spy& spy, double now_s) {
+bool show(const SpyFlags& flags, const Spy& spy, double now_s) {
   if (flags.json) {
     std::cout << spy.json(now_s).dump(flags.once ? 2 : -1) << '\n';
   } else {
@@ -33,7 +33,7 @@ bool show(const Flags& flags, const Spy& spy, double now_s) {
   return static_cast<bool>(std::cout.flush());
 }
 
-int spyOnLog(Flags flags, Spy& spy) {
+int spyOnLog(SpyFlags flags, Spy& spy) {
   flags.once = true;
   comms::LogReader log(flags.log);
   double latest_s = 0;
@@ -47,7 +47,7 @@ int spyOnLog(Flags flags, Spy& spy) {
   return 0;
 }
 
-int spyOnAir(const Flags& flags, Spy& spy) {
+int spyOnAir(const SpyFlags& flags, Spy& spy) {
   comms::LcmBusOptions options;
   options.everything = true;
   options.max_message_bytes = size_t{1} << 28;
@@ -70,7 +70,7 @@ int spyOnAir(const Flags& flags, Spy& spy) {
   return heard || !flags.once ? 0 : 1;
 }
 
-int spy(const Flags& flags) {
+int spy(const SpyFlags& flags) {
   std::optional<std::regex> shown;
   if (!flags.channel.empty()) {
     try {
@@ -89,7 +89,7 @@ int spy(const Flags& flags) {
 void addSpyCommand(CLI::App& app, Action& chosen) {
   CLI::App* command =
       app.add_subcommand("spy", "what is said on the link: channels, rates, bytes, decoded messages");
-  const auto flags = std::make_shared<Flags>();
+  const auto flags = std::make_shared<SpyFlags>();
   auto* url = command->add_option("--lcm-url", flags->lcm_url, "multicast group to listen to")
                   ->envname("SHOAL_LCM_URL")
                   ->capture_default_str();

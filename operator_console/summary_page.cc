@@ -90,7 +90,7 @@ std::string fact(std::string_view what, const std::string& value, std::string_vi
   return fmt::format("<div><dt>{}</dt><dd class=\"{}\">{}</dd></div>\n", what, kind, value);
 }
 
-std::string nameOf(const Json& row) {
+std::string titleOf(const Json& row) {
   const std::string name = row.at("name");
   return name.empty() ? "label " + std::to_string(row.at("label").get<int>()) : escaped(name);
 }
@@ -125,7 +125,7 @@ std::string card(const MissionSummary& mission, const Json& row) {
   const Rgb color = colorOf(label);
   std::string text = fmt::format(
       "<div class=\"card\"><h3><span class=\"swatch\" style=\"background:rgb({},{},{})\"></span>{}</h3>",
-      color[0], color[1], color[2], nameOf(row));
+      color[0], color[1], color[2], titleOf(row));
   const auto held = mission.pictures.find(label);
   text += "<div class=\"shots\">";
   if (held == mission.pictures.end()) {
@@ -151,7 +151,7 @@ std::string labels(const MissionSummary& mission) {
   std::string rare;
   for (const Json& row : mission.labels) {
     if (row.at("area_m2").get<double>() >= kRareShare * mission.area_m2) continue;
-    rare += fmt::format("<li>{}: {:.1f} m&sup2;, {}</li>\n", nameOf(row), row.at("area_m2").get<double>(),
+    rare += fmt::format("<li>{}: {:.1f} m&sup2;, {}</li>\n", titleOf(row), row.at("area_m2").get<double>(),
                         finderOf(row));
   }
   return text + (rare.empty() ? "<p class=\"note\">No label covers less than 1 % of the map.</p>\n"

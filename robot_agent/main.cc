@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -221,6 +222,11 @@ int main(int argc, char** argv) {
   app.add_option("--key", f.key, "file with the team's key: only who has it is listened to");
   app.add_option("--profile", f.agent.explorer.profile, "words and hyper-parameters: best or paper")
       ->capture_default_str();
+  app.add_option("--detail", f.agent.explorer.detail,
+                 "of topics and certainties on the link: fine, or coarse for fewer bytes")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, mapping::Detail>{
+          {"fine", mapping::Detail::kFine}, {"coarse", mapping::Detail::kCoarse}}))
+      ->default_str("fine");
   app.add_option("--mission", f.mission, "number or name that all processes of a mission share")
       ->capture_default_str();
   app.add_option("--rate", f.rate, "mission seconds per wall second: 1, 10, or max")->capture_default_str();

@@ -10,6 +10,7 @@
 #include "shoal/comms/channels.h"
 #include "shoal/comms/fading.h"
 #include "shoal/random.h"
+#include "shoal/text_hash.h"
 
 namespace shoal::comms {
 namespace {
@@ -21,12 +22,6 @@ constexpr size_t kMaxHeld = 65536;
 constexpr int64_t kBegunAnewUs = 60'000'000;
 
 int64_t microseconds(double seconds) { return std::llround(seconds * 1e6); }
-
-uint64_t hashOf(std::string_view text) {
-  uint64_t hash = text.size();
-  for (const char c : text) hash = hashCombine(hash, static_cast<uint8_t>(c));
-  return hash;
-}
 
 // The number of the group that names the node; as many as there are groups when none does.
 size_t groupOf(const Partition& partition, const std::string& node) {
@@ -83,7 +78,7 @@ LinkEmulator::Sender* LinkEmulator::senderOf(const std::string& name) {
   if (found != senders_.end()) return &found->second;
   if (senders_.size() >= kMaxSenders) return nullptr;
   Sender sender;
-  sender.key = hashCombine(hashCombine(mix64(options_.seed), hashOf(name)), hashOf(options_.receiver));
+  sender.key = hashCombine(hashCombine(mix64(options_.seed), hashText(name)), hashText(options_.receiver));
   sender.wall_us = options_.wall.now_us();
   return &senders_.emplace(name, std::move(sender)).first->second;
 }

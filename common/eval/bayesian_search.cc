@@ -18,11 +18,11 @@ constexpr int kCandidates = 1000;
 constexpr double kKappa = 2.0;
 constexpr uint64_t kStream = 0x74756e65;  // "tune"
 
-using Point = Eigen::VectorXd;  // in the unit cube
+using CubePoint = Eigen::VectorXd;  // in the unit cube
 
-Point toCube(const std::vector<Knob>& knobs, const std::vector<double>& values) {
+CubePoint toCube(const std::vector<Knob>& knobs, const std::vector<double>& values) {
   if (values.size() != knobs.size()) throw std::invalid_argument("a setting needs one value for each knob");
-  Point p(static_cast<Eigen::Index>(knobs.size()));
+  CubePoint p(static_cast<Eigen::Index>(knobs.size()));
   for (size_t i = 0; i < knobs.size(); ++i) {
     p[static_cast<Eigen::Index>(i)] =
         std::log(values[i] / knobs[i].low) / std::log(knobs[i].high / knobs[i].low);
@@ -30,7 +30,7 @@ Point toCube(const std::vector<Knob>& knobs, const std::vector<double>& values) 
   return p;
 }
 
-std::vector<double> fromCube(const std::vector<Knob>& knobs, const Point& p) {
+std::vector<double> fromCube(const std::vector<Knob>& knobs, const CubePoint& p) {
   std::vector<double> values;
   for (size_t i = 0; i < knobs.size(); ++i) {
     const double value =
@@ -54,7 +54,7 @@ void check(const std::vector<Knob>& knobs) {
 // A Gaussian process over the unit cube, scores taken to mean 0 and deviation 1.
 class Process {
  public:
-  Process(const std::vector<Point>& points, const Eigen::VectorXd& scores) : points_(points) {
+  Process(const std::vector<CubePoint>& points, const Eigen::VectorXd& scores) : points_(points) {
     mean_ = scores.mean();
     scale_ = std::sqrt((scores.array() - mean_).square().mean());
     if (!(scale_ > 0)) scale_ = 1;
@@ -75,7 +75,7 @@ class Process {
   struct Guess {
     double mean, deviation;
   };
-  Guess at(const Point& p) const {
+  Guess at(const CubePoint& p) const {
     Eigen::VectorXd k(std::ssize(points_));
     for (Eigen::Index i = 0; i < k.size(); ++i) k[i] = kernel(p, points_[static_cast<size_t>(i)], width_);
     const double variance = 1.0 - k.dot(cholesky_.solve(k));
@@ -83,7 +83,7 @@ class Process {
   }
 
  private:
-  static double kernel(const Point& a, const Point& b, double width) {  // Matérn 5/2
+  static double kernel(const CubePoint& a, const CubePoint& b, double width) {  // Matérn 5/2
     const double r = std::sqrt(5.0) * (a - b).norm() / width;
     return (1 + r + r * r / 3) * std::exp(-r);
   }
@@ -103,14 +103,14 @@ class Process {
     return -0.5 * y.dot(weights_) - cholesky_.matrixLLT().diagonal().array().log().sum();
   }
 
-  const std::vector<Point>& points_;
+  const std::vector<CubePoint>& points_;
   double mean_ = 0, scale_ = 1, width_ = 0, noise_ = 0;
   Eigen::LLT<Eigen::MatrixXd> cholesky_;
   Eigen::VectorXd weights_;
 };
 
 struct Data {
-  std::vector<Point> points;
+  std::vector<CubePoint> points;
   Eigen::VectorXd scores;
 };
 
@@ -135,7 +135,7 @@ std::vector<double> nextSetting(const std::vector<Knob>& knobs, const std::vecto
     double root = 2;
     for (int i = 0; i < 64; ++i) root = std::pow(1 + root, 1.0 / static_cast<double>(dimensions + 1));
     Random shift(seed, kStream);
-    Point p(dimensions);
+    CubePoint p(dimensions);
     for (Eigen::Index d = 0; d < dimensions; ++d) {
       const double x = shift.uniform() +
                        static_cast<double>(tried.size() + 1) / std::pow(root, static_cast<double>(d + 1));
@@ -146,9 +146,9 @@ std::vector<double> nextSetting(const std::vector<Knob>& knobs, const std::vecto
   const Data data = dataOf(knobs, tried);
   const Process process(data.points, data.scores);
   std::optional<double> most;
-  Point best;
+  CubePoint best;
   for (int i = 0; i < kCandidates; ++i) {
-    Point p(dimensions);
+    CubePoint p(dimensions);
     for (Eigen::Index d = 0; d < dimensions; ++d) p[d] = draw.uniform();
     const Process::Guess guess = process.at(p);
     const double bound = guess.mean + kKappa * guess.deviation;

@@ -6,19 +6,16 @@
 #include <stdexcept>
 #include <utility>
 
+#include "shoal/eval/piece_cost.h"
 #include "shoal/eval/topic_tally.h"
 #include "shoal/mapping/belief_pieces.h"
 #include "shoal/matching/hungarian.h"
 #include "shoal/robot/explorer.h"
-#include "shoal/wire/piece_codec.h"
 
 namespace shoal::eval {
 namespace {
 
 using Counts = std::map<int32_t, int64_t>;  // of a topic, by word
-
-constexpr int64_t kHeaderBytes = 53;  // as bytesSent()
-constexpr size_t kMaxPayload = 1300;
 
 matching::Descriptor descriptor(const Counts& counts, int32_t slot) {
   matching::Descriptor d{.slot = slot, .entries = {}};
@@ -36,13 +33,9 @@ Counts countsOf(const mapping::BelievedTopic& topic) {
 int64_t bytesOf(const std::vector<mapping::BelievedTopic>& model,
                 const std::vector<world::WordGroup>& groups) {
   mapping::LocalBelief belief{.robot = {}, .version = {0, 0}, .groups = groups, .topics = model, .cells = {}};
-  int64_t bytes = 0;
-  for (const mapping::Piece& whole : mapping::wholePieces(belief)) {
-    for (const mapping::Piece& part : wire::cutToFit(whole, kMaxPayload)) {
-      bytes += std::ssize(wire::encode(part, 1, world::Timestamp{})) + kHeaderBytes;
-    }
-  }
-  return bytes;
+  PieceCost cost;
+  for (const mapping::Piece& whole : mapping::wholePieces(belief)) cost += costOf(whole);
+  return cost.bytes;
 }
 
 class Team {

@@ -6,20 +6,17 @@
 #include <utility>
 
 #include "shoal/demand.h"
+#include "shoal/eval/piece_cost.h"
 #include "shoal/eval/topic_tally.h"
 #include "shoal/mapping/belief_pieces.h"
 #include "shoal/mapping/belief_store.h"
 #include "shoal/mapping/stacked_topics.h"
 #include "shoal/robot/explorer.h"
 #include "shoal/wire/limits.h"
-#include "shoal/wire/piece_codec.h"
 
 namespace shoal::eval {
 namespace {
 
-// A channel of 16 letters and its NUL, LCM's header 8, UDP 8, IP 20.
-constexpr int64_t kHeaderBytes = 53;
-constexpr size_t kMaxPayload = 1300;
 constexpr size_t kPublishEvery = 5;  // as robot_agent
 
 robot::Explorer explorer(world::RobotId robot, double cell_size_m, const LearningOptions& options) {
@@ -56,10 +53,9 @@ SentBytes bytesSent(const std::vector<world::WordsInCells>& images, world::Robot
     if ((i + 1) % kPublishEvery != 0 && i + 1 < images.size()) continue;
     for (const mapping::Piece& whole : changes.update(mind.belief())) {
       int64_t& bytes = std::holds_alternative<mapping::TopicPart>(whole.content) ? sent.topics : sent.map;
-      for (const mapping::Piece& part : wire::cutToFit(whole, kMaxPayload)) {
-        bytes += std::ssize(wire::encode(part, 1, world::Timestamp{})) + kHeaderBytes;
-        ++sent.datagrams;
-      }
+      const PieceCost cost = costOf(whole);
+      bytes += cost.bytes;
+      sent.datagrams += cost.datagrams;
     }
   }
   return sent;

@@ -8,16 +8,12 @@
 
 #include "shoal/mapping/csv.h"
 #include "shoal/mapping/outline.h"
+#include "shoal/rounded.h"
 
 namespace shoal::mapping {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-double rounded(double value, double per_unit) {
-  const double result = std::round(value * per_unit) / per_unit;
-  return result == 0.0 ? 0.0 : result;  // never -0.0
-}
 
 Json ringJson(const Ring& ring, double cell_size_m) {
   Json corners = Json::array();

@@ -16,21 +16,20 @@ using Json = nlohmann::ordered_json;
 
 const std::vector<std::string> kColumns = {"x_m", "y_m", "z_m", "topic", "seen_s", "certainty"};
 
-world::Timestamp fromSeconds(double seconds) { return {std::llround(seconds * 1e3) * 1000}; }
-
 // Four decimals that stand for the same step of 1/63 as the exact number: so the files of a run add up to the
 // map that was made from what travelled.
 std::string certaintyText(float certainty) {
-  const auto stepOf = [](float value) { return std::lround(std::clamp(value, 0.f, 1.f) * kCertaintySteps); };
-  const long step = stepOf(certainty);
+  const int step = certaintySteps(certainty);
   double shown = std::round(static_cast<double>(certainty) * 1e4) / 1e4;
-  if (const long read = stepOf(static_cast<float>(shown)); read != step) shown += read < step ? 1e-4 : -1e-4;
+  if (const int read = certaintySteps(static_cast<float>(shown)); read != step)
+    shown += read < step ? 1e-4 : -1e-4;
   return fixed(shown, 4);
 }
 
 std::string topicsJson(const LocalBelief& belief) {
   Json json;
   if (belief.version.epoch > 0) json["epoch"] = belief.version.epoch;
+  if (belief.detail != Detail::kFine) json["detail"] = toText(belief.detail);
   json["vocabulary"] = belief.groups.empty() ? 0 : belief.groups.back().first + belief.groups.back().size;
   json["groups"] = Json::array();
   for (const world::WordGroup& g : belief.groups) {
@@ -50,12 +49,15 @@ std::string topicsJson(const LocalBelief& belief) {
 
 void readTopics(const Json& json, LocalBelief& belief) {
   belief.version.epoch = json.value("epoch", 0);
+  const std::string detail = json.value("detail", std::string(toText(Detail::kFine)));
+  if (!parseDetail(detail)) throw std::invalid_argument("no such detail: " + detail);
+  belief.detail = *parseDetail(detail);
   for (const Json& g : json.at("groups")) {
     belief.groups.push_back({g.at("name"), g.at("first"), g.at("size")});
   }
   for (const Json& t : json.at("topics")) {
     BelievedTopic topic{.id = world::TopicId{t.at("id").get<int32_t>()},
-                        .created = fromSeconds(t.value("created_s", 0.0)),
+                        .created = timeFromSeconds(t.value("created_s", 0.0)),
                         .weight = t.at("weight"),
                         .words = {}};
     for (const auto& [word, count] : t.at("words").items()) {
@@ -93,13 +95,14 @@ LocalBelief readBelief(const std::string& folder, world::RobotId robot, const wo
   } catch (const Json::exception& error) {
     throw std::runtime_error(topics + ": " + error.what());
   } catch (const std::logic_error&) {
-    throw std::runtime_error(topics + ": the keys of \"words\" must be word numbers");
+    throw std::runtime_error(topics +
+                             R"(: the keys of "words" must be word numbers, "detail" fine or coarse)");
   }
   const std::string map = folder + "/map.csv";
   for (const auto& row : parseCsv(readFile(map), kColumns, map)) {
     belief.cells.push_back({grid.cellOf({toReal(row[0], map), toReal(row[1], map), toReal(row[2], map)}),
                             world::TopicId{static_cast<int32_t>(toInteger(row[3], map))},
-                            fromSeconds(toReal(row[4], map)), static_cast<float>(toReal(row[5], map))});
+                            timeFromSeconds(toReal(row[4], map)), static_cast<float>(toReal(row[5], map))});
   }
   std::ranges::sort(belief.cells, {}, &BelievedCell::cell);
   return belief;

@@ -2,7 +2,6 @@
 #include "shoal/mapping/belief_pieces.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace shoal::mapping {
 
@@ -22,14 +21,14 @@ std::vector<Piece> wholePieces(const LocalBelief& belief) {
   for (const BelievedTopic& topic : belief.topics) {
     pieces.push_back({.key = {belief.robot, PieceKind::kTopic, {number(topic.id), 0, 0}},
                       .version = belief.version,
-                      .content = TopicPart{topic.created, topic.weight, group_sizes, quantize(topic.words)}});
+                      .content = TopicPart{topic.created, topic.weight, group_sizes,
+                                           quantize(topic.words, belief.detail)}});
   }
   std::map<std::array<int32_t, 3>, BrickPart> bricks;
   std::map<std::array<int32_t, 3>, CertaintyPart> certainties;
   for (const BelievedCell& c : belief.cells) {
-    const auto steps = static_cast<uint8_t>(std::lround(std::clamp(c.certainty, 0.f, 1.f) * kCertaintySteps));
     bricks[brickOf(c.cell)].cells.push_back({c.cell, c.topic, c.seen});
-    certainties[brickOf(c.cell)].cells.push_back({c.cell, steps});
+    certainties[brickOf(c.cell)].cells.push_back({c.cell, certaintySteps(c.certainty, belief.detail)});
   }
   for (auto& [index, part] : bricks) {
     pieces.push_back({.key = {belief.robot, PieceKind::kBrick, index},

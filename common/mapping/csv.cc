@@ -91,4 +91,6 @@ std::vector<std::vector<std::string>> parseCsv(const std::string& text,
 double toReal(const std::string& field, const std::string& path) { return parse<double>(field, path); }
 int64_t toInteger(const std::string& field, const std::string& path) { return parse<int64_t>(field, path); }
 
+world::Timestamp timeFromSeconds(double seconds) { return {std::llround(seconds * 1e3) * 1000}; }
+
 }  // namespace shoal::mapping

@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "shoal/world/ids.h"
+
 namespace shoal::mapping {
 
 /// A number with a fixed count of decimals, `.` as decimal mark whatever the locale, never "-0.000".
@@ -24,5 +26,8 @@ std::vector<std::vector<std::string>> parseCsv(const std::string& text,
 /// Numbers out of fields. @throws std::runtime_error naming the path and the field.
 double toReal(const std::string& field, const std::string& path);
 int64_t toInteger(const std::string& field, const std::string& path);
+
+/// The time that files tell as seconds, to the millisecond.
+world::Timestamp timeFromSeconds(double seconds);
 
 }  // namespace shoal::mapping

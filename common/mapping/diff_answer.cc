@@ -8,16 +8,12 @@
 #include "shoal/demand.h"
 #include "shoal/mapping/csv.h"
 #include "shoal/mapping/map_files.h"
+#include "shoal/rounded.h"
 
 namespace shoal::mapping {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-double rounded(double value, double per_unit) {
-  const double result = std::round(value * per_unit) / per_unit;
-  return result == 0.0 ? 0.0 : result;  // never -0.0
-}
 
 struct Count {
   int64_t appeared = 0, seen = 0, relabelled = 0, gone = 0;

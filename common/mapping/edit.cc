@@ -7,12 +7,12 @@
 
 #include "shoal/mapping/label_name.h"
 #include "shoal/random.h"
+#include "shoal/world/mission_time.h"
 
 namespace shoal::mapping {
 namespace {
 
 constexpr int32_t kMaxRobotNumber = 9999;
-constexpr int64_t kMaxTimeUs = (int64_t{1} << 62) - 1;
 
 bool isAuthor(std::string_view name) {
   return !name.empty() && name.size() <= 16 &&
@@ -25,7 +25,7 @@ bool isTopic(const TopicRef& t) {
   return isRobot(t.robot) && t.epoch >= 0 && number(t.topic) >= 0 && number(t.topic) <= world::kMaxTopicId;
 }
 
-struct Hasher {
+struct EditHasher {
   uint64_t hash = 0;
   void add(int64_t value) { hash = hashCombine(hash, static_cast<uint64_t>(value)); }
   void add(const std::string& text) {
@@ -74,7 +74,7 @@ std::string_view verbOf(const Edit& edit) {
 }
 
 uint64_t contentHash(const Edit& edit) {
-  Hasher hasher;
+  EditHasher hasher;
   hasher.add(edit.id.author);
   hasher.add(edit.id.counter);
   hasher.add(edit.time.us);
@@ -91,7 +91,7 @@ bool isEarlier(const Edit& a, const Edit& b) {
 std::string fault(const Edit& edit) {
   if (!isAuthor(edit.id.author)) return "an author is 1 to 16 capitals and digits";
   if (edit.id.counter < 1) return "edits are counted from 1";
-  if (edit.time.us < 0 || edit.time.us > kMaxTimeUs) return "the time is out of range";
+  if (edit.time.us < 0 || edit.time.us > world::kMaxTimeUs) return "the time is out of range";
   if (const auto* name = std::get_if<NameEdit>(&edit.operation)) {
     if (!isTopic(name->topic)) return "the topic is out of range";
     if (!isLabelName(name->text)) {

@@ -10,13 +10,12 @@
 #include "shoal/mapping/area_answer.h"
 #include "shoal/mapping/judgement.h"
 #include "shoal/mapping/label_name.h"
+#include "shoal/world/mission_time.h"
 
 namespace shoal::mapping {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr int64_t kMaxTimeUs = (int64_t{1} << 62) - 1;
 
 std::optional<int32_t> numberIn(const std::string& text) {
   int32_t value = 0;
@@ -80,7 +79,7 @@ Edit makeEdit(const GlobalMap& map, const BeliefStore& beliefs, const Json& ques
   const std::vector<Edit> edits = editsOf(beliefs);
   Edit edit{.id = {author, 1}, .time = now, .operation = {}};
   for (const Edit& e : edits) {
-    edit.time = std::max(edit.time, {std::min(e.time.us + 1, kMaxTimeUs)});
+    edit.time = std::max(edit.time, {std::min(e.time.us + 1, world::kMaxTimeUs)});
     if (e.id.author == author) edit.id.counter = std::max(edit.id.counter, e.id.counter + 1);
   }
   const std::string verb = question.at("edit");

@@ -6,17 +6,30 @@
 
 namespace shoal::mapping {
 
-std::vector<world::WordCount> quantize(const std::vector<world::WordCount>& counts) {
+std::string_view toText(Detail detail) { return detail == Detail::kFine ? "fine" : "coarse"; }
+
+std::optional<Detail> parseDetail(std::string_view text) {
+  for (const Detail detail : {Detail::kFine, Detail::kCoarse})
+    if (toText(detail) == text) return detail;
+  return std::nullopt;
+}
+
+std::vector<world::WordCount> quantize(const std::vector<world::WordCount>& counts, Detail detail) {
   double squares = 0;  // of integers, and below 2^53 for any count of words a robot can see: exact
   for (const world::WordCount& w : counts) squares += static_cast<double>(w.count) * w.count;
   // sqrt is correctly rounded by IEEE 754, so every machine gets the same integers.
-  const double step = std::max(1.0, std::sqrt(squares) / 1000.0);
+  const double step = std::max(1.0, std::sqrt(squares) / (detail == Detail::kFine ? 1000.0 : 100.0));
   std::vector<world::WordCount> quantized;
   for (const world::WordCount& w : counts) {
     const auto level = static_cast<int32_t>(std::floor(w.count / step + 0.5));
     if (level > 0) quantized.push_back({w.word, level});
   }
   return quantized;
+}
+
+uint8_t certaintySteps(float certainty, Detail detail) {
+  const long steps = std::lround(std::clamp(certainty, 0.f, 1.f) * kCertaintySteps);
+  return static_cast<uint8_t>(detail == Detail::kFine ? steps : (steps + 4) / 9 * 9);
 }
 
 }  // namespace shoal::mapping

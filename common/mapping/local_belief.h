@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <string_view>
 #include <vector>
 
 #include "shoal/mapping/piece.h"
@@ -41,6 +43,16 @@ struct ExamplePicture {
   bool operator==(const ExamplePicture&) const = default;
 };
 
+/// How finely a robot tells what it believes: bytes against detail. Labels and times are exact in both.
+enum class Detail {
+  kFine,   ///< topics in thousandths of their norm, certainties in steps of 1/63
+  kCoarse  ///< in hundredths, in steps of 1/7
+};
+
+/// "fine", "coarse", and back; nothing for another text.
+std::string_view toText(Detail detail);
+std::optional<Detail> parseDetail(std::string_view text);
+
 /// All that one robot believes at one moment: its topics, its labelled cells, and pictures of its
 /// topics.
 struct LocalBelief {
@@ -50,12 +62,17 @@ struct LocalBelief {
   std::vector<BelievedTopic> topics;          ///< ascending by id
   std::vector<BelievedCell> cells;            ///< ascending by cell
   std::vector<ExamplePicture> examples = {};  ///< ascending by topic, then number
+  Detail detail = Detail::kFine;              ///< of what it tells the others
 };
 
-/// A topic's counts as integers fit to travel: divided by a thousandth of their L2 norm, when that is above
-/// 1, and rounded half up; words that round to 0 are left out. One step for all words, so that the word
-/// groups keep their weights. With n words left out the cosine to the exact counts stays above 1 - n /
-/// 8,000,000.
-std::vector<world::WordCount> quantize(const std::vector<world::WordCount>& counts);
+/// A topic's counts as integers fit to travel: divided by a thousandth of their L2 norm (a hundredth when
+/// coarse), when that is above 1, and rounded half up; words that round to 0 are left out. One step for all
+/// words, so that the word groups keep their weights. Of n words in all the cosine to the exact counts stays
+/// above 1 - n / 8,000,000 (1 - n / 80,000).
+std::vector<world::WordCount> quantize(const std::vector<world::WordCount>& counts,
+                                       Detail detail = Detail::kFine);
+
+/// A certainty in [0, 1] in steps of 1/63, fit to travel: of nine steps one when coarse.
+uint8_t certaintySteps(float certainty, Detail detail = Detail::kFine);
 
 }  // namespace shoal::mapping

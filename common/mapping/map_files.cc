@@ -18,8 +18,6 @@ const std::vector<std::string> kMapColumns = {"x_m", "y_m", "z_m", "label", "rob
 const std::vector<std::string> kLabelColumns = {"label",   "name",   "cells",
                                                 "area_m2", "robots", "first_seen_s"};
 
-world::Timestamp fromSeconds(double seconds) { return {std::llround(seconds * 1e3) * 1000}; }
-
 world::RobotId toRobot(const std::string& field, const std::string& path) {
   const auto robot = world::parseRobotId(field);
   if (!robot) throw std::runtime_error(path + ": \"" + field + "\" is not a robot; robots are R00, R01, ...");
@@ -75,7 +73,7 @@ GlobalMap parseGlobalMap(const std::string& cells_csv, const std::string& labels
   for (const auto& row : parseCsv(cells_csv, kMapColumns, cells)) {
     map.cells.push_back({grid.cellOf({toReal(row[0], cells), toReal(row[1], cells), toReal(row[2], cells)}),
                          world::GlobalLabel{static_cast<int32_t>(toInteger(row[3], cells))},
-                         toRobot(row[4], cells), fromSeconds(toReal(row[5], cells)),
+                         toRobot(row[4], cells), timeFromSeconds(toReal(row[5], cells)),
                          certaintyFrom(toReal(row[6], cells))});
   }
   std::ranges::sort(map.cells, {}, &GlobalCell::cell);
@@ -85,7 +83,7 @@ GlobalMap parseGlobalMap(const std::string& cells_csv, const std::string& labels
                          .name = row[1],
                          .cells = toInteger(row[2], labels),
                          .robots = {},
-                         .first_seen = fromSeconds(toReal(row[5], labels))};
+                         .first_seen = timeFromSeconds(toReal(row[5], labels))};
     std::istringstream robots(row[4]);
     for (std::string robot; std::getline(robots, robot, ';');)
       summary.robots.push_back(toRobot(robot, labels));

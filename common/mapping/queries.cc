@@ -7,13 +7,12 @@
 #include <nlohmann/json.hpp>
 
 #include "shoal/mapping/map_files.h"
+#include "shoal/rounded.h"
 
 namespace shoal::mapping {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-double rounded(double value, double per_unit) { return std::round(value * per_unit) / per_unit; }
 
 }  // namespace
 

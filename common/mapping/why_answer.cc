@@ -12,6 +12,7 @@
 #include "shoal/mapping/judgement.h"
 #include "shoal/mapping/stacked_topics.h"
 #include "shoal/mapping/topic_similarities.h"
+#include "shoal/rounded.h"
 
 namespace shoal::mapping {
 namespace {
@@ -20,8 +21,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr size_t kNearestTold = 3;
 constexpr size_t kWordsTold = 5;
-
-double rounded(double value, double per_unit) { return std::round(value * per_unit) / per_unit; }
 
 // A topic as another one sees it. Indices are those of StackedTopics::topics.
 struct Alike {

@@ -77,7 +77,8 @@ mapping::LocalBelief Explorer::believe() const {
                               .version = {options_.epoch, last_observation_},
                               .groups = words_->groups(),
                               .topics = {},
-                              .cells = {}};
+                              .cells = {},
+                              .detail = options_.detail};
   for (topics::TopicCounts& topic : snapshot.topics) {
     belief.topics.push_back({topic.id, topic.created, topic.weight, std::move(topic.words)});
   }

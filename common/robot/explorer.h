@@ -18,7 +18,7 @@
 
 namespace shoal::robot {
 
-/// What makes an explorer. All of it changes what it learns.
+/// What makes an explorer. All of it changes what it learns, unless said otherwise.
 struct ExplorerOptions {
   world::RobotId robot{};
   std::string profile = "best";                                   ///< words and hyper-parameters
@@ -26,7 +26,8 @@ struct ExplorerOptions {
   double cell_size_m = 0.8;                                       ///< edge of a cell, > 0
   int32_t epoch = 0;                                              ///< grows when the robot has lost its disk
   std::optional<topics::LearnerHyperparameters> hyperparameters;  ///< other than the profile's, to experiment
-  bool keeps_pictures = false;  ///< of what its topics look like; changes nothing else
+  bool keeps_pictures = false;                      ///< of what its topics look like; changes nothing else
+  mapping::Detail detail = mapping::Detail::kFine;  ///< of what it tells; changes nothing that it learns
 };
 
 /// Milliseconds that the last observation took, by stage.

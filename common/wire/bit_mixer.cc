@@ -30,7 +30,7 @@ std::array<int16_t, 4096> makeStretch() {
 // How far an estimate is believed that has seen so many bits, of 256.
 constexpr std::array<int32_t, 8> kBelief = {0, 110, 160, 190, 210, 225, 236, 245};
 
-constexpr int kLearningShift = 14;
+constexpr int kLearningShift = 15;
 
 }  // namespace
 

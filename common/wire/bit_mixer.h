@@ -21,7 +21,7 @@ struct ContextBit {
   uint16_t one = 1u << 15;  ///< P(1) x 65536
   uint8_t seen = 0;         ///< bits seen, at most kMemory
 
-  static constexpr int kMemory = 60;
+  static constexpr int kMemory = 250;
 
   /// Moves 1 / (seen + 1.5) of the way to the bit.
   void update(int bit);

@@ -109,6 +109,12 @@ void encodeWhere(Encoder& encoder, std::span<const Piece* const> pieces, CellFie
 }
 
 template <typename Coder>
+bool codeCertainties(Coder& coder, const CellField& field, Palette& steps) {
+  return codePalette(coder, mapping::kCertaintySteps, mapping::kCertaintySteps + 1, steps.values) &&
+         codeIndices(coder, field, steps.size(), Scale::kNames, steps.indices) && !coder.overrun();
+}
+
+template <typename Coder>
 bool codeColumns(Coder& coder, const CellField& field, Palette& topics, Palette& times) {
   return codePalette(coder, world::kMaxTopicId, kMaxCellsPerMessage, topics.values) &&
          codeIndices(coder, field, topics.size(), Scale::kNames, topics.indices) &&
@@ -160,10 +166,11 @@ Bytes encodeCertainties(std::span<const Piece* const> pieces) {
   Encoder encoder;
   CellField field;
   encodeWhere<CertaintyPart>(encoder, pieces, field);
-  std::vector<int32_t> steps;
+  std::vector<int64_t> steps;
   for (const Piece* piece : pieces)
     for (const auto& c : std::get<CertaintyPart>(piece->content).cells) steps.push_back(c.steps);
-  SHOAL_DEMAND(codeLevels(encoder, field, mapping::kCertaintySteps + 1, steps));
+  Palette palette = Palette::of(std::move(steps));
+  SHOAL_DEMAND(codeCertainties(encoder, field, palette));
   return encoder.finish();
 }
 
@@ -171,15 +178,12 @@ bool decodeCertainties(std::span<const uint8_t> payload, std::span<Piece> pieces
   Decoder decoder(payload);
   CellField field;
   std::vector<size_t> ends;
-  std::vector<int32_t> steps;
-  if (!decodeWhere(decoder, pieces, field, ends) ||
-      !codeLevels(decoder, field, mapping::kCertaintySteps + 1, steps) || decoder.overrun()) {
-    return false;
-  }
+  Palette steps;
+  if (!decodeWhere(decoder, pieces, field, ends) || !codeCertainties(decoder, field, steps)) return false;
   for (size_t i = 0, cell = 0; i < pieces.size(); ++i) {
     CertaintyPart part;
     for (; cell < ends[i]; ++cell)
-      part.cells.push_back({field.cells()[cell], static_cast<uint8_t>(steps[cell])});
+      part.cells.push_back({field.cells()[cell], static_cast<uint8_t>(steps.at(cell))});
     pieces[i].content = std::move(part);
   }
   return true;

@@ -201,40 +201,6 @@ bool codeIndices(Coder& coder, const CellField& field, int32_t size, Scale scale
 }
 
 template <typename Coder>
-bool codeLevels(Coder& coder, const CellField& field, int32_t levels, std::vector<int32_t>& values) {
-  values.resize(field.near().size());
-  std::array<SmallNumber, 6> residual;  // by how much the neighbours differ
-  for (size_t i = 0; i < values.size(); ++i) {
-    if (coder.overrun()) return false;
-    int32_t sum = 0, weight = 0, least = levels, most = -1;
-    for (size_t k = 0; k < kNumNear; ++k) {
-      const int32_t place = field.near()[i][k];
-      if (place < 0) continue;
-      const int32_t level = values[static_cast<size_t>(place)];
-      const int32_t own = k < kNearColumns.size() ? kNearColumns[k].weight : kBelowWeight;
-      sum += own * level;
-      weight += own;
-      if (k > 3) continue;
-      least = std::min(least, level);
-      most = std::max(most, level);
-    }
-    const int32_t expected = weight == 0 ? levels / 2 : (2 * sum + weight) / (2 * weight);
-    const int32_t spread = (most - least) * 32 / levels;
-    const size_t context = weight == 0   ? 5
-                           : most < 0    ? 4
-                           : spread == 0 ? 0
-                           : spread < 3  ? 1
-                           : spread < 9  ? 2
-                                         : 3;
-    const uint32_t coded = residual[context].code(coder, zigzag(values[i] - expected));
-    if (coded > static_cast<uint32_t>(2 * levels)) return false;
-    values[i] = expected + unzigzag(coded);
-    if (values[i] < 0 || values[i] >= levels) return false;
-  }
-  return true;
-}
-
-template <typename Coder>
 bool codePalette(Coder& coder, int64_t limit, size_t max_size, std::vector<int64_t>& palette) {
   const uint64_t size = codeWide(coder, palette.size());
   if (size == 0 || size > max_size) return false;
@@ -266,8 +232,6 @@ bool codeTimes(Coder& coder, int64_t limit, size_t max_size, std::vector<int64_t
 
 template bool codeIndices(Encoder&, const CellField&, int32_t, Scale, std::vector<int32_t>&);
 template bool codeIndices(Decoder&, const CellField&, int32_t, Scale, std::vector<int32_t>&);
-template bool codeLevels(Encoder&, const CellField&, int32_t, std::vector<int32_t>&);
-template bool codeLevels(Decoder&, const CellField&, int32_t, std::vector<int32_t>&);
 template bool codePalette(Encoder&, int64_t, size_t, std::vector<int64_t>&);
 template bool codePalette(Decoder&, int64_t, size_t, std::vector<int64_t>&);
 template bool codeTimes(Encoder&, int64_t, size_t, std::vector<int64_t>&);

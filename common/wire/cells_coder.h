@@ -55,7 +55,7 @@ class GeometryCoder {
 
 /// How the values of a column of numbers relate.
 enum class Scale {
-  kNames,  ///< they do not: a new one is one of the frequent ones (topics, labels)
+  kNames,  ///< they do not: a new one is one of the frequent ones (topics, labels, certainties)
   kOrder   ///< a new one is probably close to a neighbour's (times)
 };
 
@@ -64,11 +64,6 @@ enum class Scale {
 template <typename Coder>
 bool codeIndices(Coder& coder, const CellField& field, int32_t size, Scale scale,
                  std::vector<int32_t>& indices);
-
-/// One level in [0, levels) per cell, expected to be near its neighbours' mean.
-/// @returns false when a level read is out of range or the stream has ended.
-template <typename Coder>
-bool codeLevels(Coder& coder, const CellField& field, int32_t levels, std::vector<int32_t>& values);
 
 /// Distinct numbers in [0, limit], ascending, at least one and at most `max_size`.
 /// @returns false when what is read is none of that.

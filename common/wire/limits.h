@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "shoal/world/mission_time.h"
+
 namespace shoal::wire {
 
 /// The longest encoded message that can stand in a datagram of 1400 bytes: LCM's header takes 8, the channel
@@ -37,7 +39,6 @@ inline constexpr int32_t kMaxRobotsPerLabel = 256;
 inline constexpr size_t kMaxNameBytes = 64;
 inline constexpr int32_t kMaxChunks = 32767;
 
-/// Mission times lie in [0, kMaxTimeUs]: sums and differences of two cannot overflow.
-inline constexpr int64_t kMaxTimeUs = (int64_t{1} << 62) - 1;
+using world::kMaxTimeUs;
 
 }  // namespace shoal::wire

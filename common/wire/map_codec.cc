@@ -49,8 +49,7 @@ std::string fault(const MapChunk& chunk) {
 }
 
 struct Columns {
-  Palette labels, robots, times;
-  std::vector<int32_t> steps;
+  Palette labels, robots, times, steps;
 };
 
 template <typename Coder>
@@ -62,7 +61,8 @@ bool codeColumns(Coder& coder, const CellField& field, Columns& columns) {
          codeIndices(coder, field, robots.size(), Scale::kNames, robots.indices) &&
          codeTimes(coder, kMaxTimeUs, kMaxBrickCells, times.values) &&
          codeIndices(coder, field, times.size(), Scale::kOrder, times.indices) &&
-         codeLevels(coder, field, kCertaintySteps + 1, steps) && !coder.overrun();
+         codePalette(coder, kCertaintySteps, kCertaintySteps + 1, steps.values) &&
+         codeIndices(coder, field, steps.size(), Scale::kNames, steps.indices) && !coder.overrun();
 }
 
 Bytes encodeValid(const MapChunk& chunk, int32_t mission, world::Timestamp time) {
@@ -80,11 +80,11 @@ Bytes encodeValid(const MapChunk& chunk, int32_t mission, world::Timestamp time)
   if (!chunk.cells.empty()) {
     CellField field;
     GeometryCoder().code(encoder, chunk.brick, Occupancy::of(chunk.cells), field);
-    Columns columns{Palette::of(chunk.cells, [](const GlobalCell& c) -> int64_t { return number(c.label); }),
-                    Palette::of(chunk.cells, [](const GlobalCell& c) -> int64_t { return number(c.robot); }),
-                    Palette::of(chunk.cells, [](const GlobalCell& c) { return c.seen.us; }),
-                    {}};
-    for (const auto& c : chunk.cells) columns.steps.push_back(certaintySteps(c.certainty));
+    Columns columns{
+        Palette::of(chunk.cells, [](const GlobalCell& c) -> int64_t { return number(c.label); }),
+        Palette::of(chunk.cells, [](const GlobalCell& c) -> int64_t { return number(c.robot); }),
+        Palette::of(chunk.cells, [](const GlobalCell& c) { return c.seen.us; }),
+        Palette::of(chunk.cells, [](const GlobalCell& c) -> int64_t { return certaintySteps(c.certainty); })};
     SHOAL_DEMAND(codeColumns(encoder, field, columns));
   }
   return pack(std::move(message), encoder.finish());
@@ -103,7 +103,7 @@ bool decodeCells(std::span<const uint8_t> payload, int32_t num_cells, MapChunk& 
                            world::GlobalLabel{static_cast<int32_t>(columns.labels.at(i))},
                            world::RobotId{static_cast<int32_t>(columns.robots.at(i))},
                            {columns.times.at(i)},
-                           static_cast<float>(columns.steps[i]) / static_cast<float>(kCertaintySteps)});
+                           static_cast<float>(columns.steps.at(i)) / static_cast<float>(kCertaintySteps)});
   }
   return true;
 }

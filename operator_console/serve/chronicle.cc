@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "operator_console/serve/chronicle.h"
+#include "shoal/rounded.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,8 +15,6 @@ using Json = nlohmann::ordered_json;
 constexpr size_t kMaxPoints = 1000;  // of a track
 constexpr size_t kMaxBins = 240;
 constexpr size_t kMaxEvents = 2000;
-
-double rounded(double value) { return std::round(value * 1e3) / 1e3; }
 
 }  // namespace
 
@@ -107,7 +106,7 @@ Json Chronicle::tracks() const {
     if (life.points.empty()) continue;
     Json points = Json::array();
     for (const Point& p : life.points)
-      points.push_back({rounded(p.t), rounded(p.x), rounded(p.y), rounded(p.z)});
+      points.push_back({rounded(p.t, 1e3), rounded(p.x, 1e3), rounded(p.y, 1e3), rounded(p.z, 1e3)});
     tracks.push_back({{"robot", name}, {"points", std::move(points)}});
   }
   return {{"tracks", std::move(tracks)}};
@@ -122,7 +121,7 @@ Json Chronicle::traffic() const {
   for (const auto& [name, life] : lives_) {
     Json bins = Json::array();
     for (const auto& [bin, sent] : life.bins) {
-      Json row{rounded(static_cast<double>(bin) * bin_s_)};
+      Json row{rounded(static_cast<double>(bin) * bin_s_, 1e3)};
       for (const std::string& traffic : classes) {
         const auto bytes = sent.find(traffic);
         row.push_back(bytes == sent.end() ? 0 : bytes->second);
@@ -139,7 +138,7 @@ Json Chronicle::events() const {
   std::ranges::stable_sort(sorted, {}, &Event::time_s);
   Json events = Json::array();
   for (const Event& e : sorted)
-    events.push_back({{"time_s", rounded(e.time_s)}, {"kind", e.kind}, {"text", e.text}});
+    events.push_back({{"time_s", rounded(e.time_s, 1e3)}, {"kind", e.kind}, {"text", e.text}});
   return {{"events", std::move(events)}};
 }
 

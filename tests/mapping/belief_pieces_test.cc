@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+
 #include "shoal/mapping/belief_store.h"
 
 namespace shoal::mapping {
@@ -28,6 +30,24 @@ TEST(QuantizeTest, RoundsToAThousandthOfTheNorm) {
             (std::vector<world::WordCount>{{0, 600}, {1, 800}, {2, 2}, {3, 3}}));
 }
 
+TEST(QuantizeTest, CoarseRoundsToAHundredth) {
+  // The norm of (300, 400) is 500, the step 5; of (3000, 4000) it is 50.
+  EXPECT_EQ(quantize({{0, 300}, {1, 400}}, Detail::kCoarse),
+            (std::vector<world::WordCount>{{0, 60}, {1, 80}}));
+  EXPECT_EQ(quantize({{0, 3000}, {1, 4000}, {2, 24}, {3, 26}}, Detail::kCoarse),
+            (std::vector<world::WordCount>{{0, 60}, {1, 80}, {3, 1}}));
+}
+
+TEST(QuantizeTest, CoarseCertaintiesAreSevenths) {
+  for (int step = 0; step <= kCertaintySteps; ++step) {
+    const float certainty = static_cast<float>(step) / kCertaintySteps;
+    EXPECT_EQ(certaintySteps(certainty), step);
+    const int coarse = certaintySteps(certainty, Detail::kCoarse);
+    EXPECT_EQ(coarse % 9, 0);
+    EXPECT_LE(std::abs(coarse - step), 4);
+  }
+}
+
 // Words of all groups keep their ratios: a rare group must not weigh as much as a frequent one.
 TEST(QuantizeTest, KeepsTheWeightOfARareGroup) {
   const auto quantized = quantize({{5, 100'000}, {5000, 1000}});
@@ -43,6 +63,17 @@ TEST(WholePiecesTest, OnePieceATopicAndTwoABrick) {
     EXPECT_EQ(piece.num_parts, 1);
   }
   EXPECT_EQ(pieces[2].key.index, (std::array<int32_t, 3>{-1, 0, 0}));
+}
+
+TEST(WholePiecesTest, ACoarseBeliefTellsCoarsely) {
+  LocalBelief coarse = belief(7);
+  coarse.topics[0].words = {{1, 3000}, {2, 4000}, {3, 24}};
+  coarse.cells[0].certainty = 0.25f;
+  coarse.detail = Detail::kCoarse;
+  const auto pieces = wholePieces(coarse);
+  EXPECT_EQ(std::get<TopicPart>(pieces[0].content).words, quantize(coarse.topics[0].words, Detail::kCoarse));
+  EXPECT_EQ(std::get<CertaintyPart>(pieces[4].content).cells[0].steps, 18);  // 15.75 of 63, so 2 of 7
+  EXPECT_EQ(std::get<BrickPart>(pieces[2].content).cells[0].topic, world::TopicId{0});
 }
 
 TEST(BeliefChangesTest, SendsOnlyWhatChanged) {

@@ -60,6 +60,20 @@ TEST_F(FilesTest, ABeliefComesBackAsItWas) {
             "x_m,y_m,z_m,topic,seen_s,certainty\n"
             "-2.400,0.000,0.800,0,59.000,0.2500\n"
             "0.000,-5.600,0.000,12,0.000,1.0000\n");
+  EXPECT_EQ(back.detail, Detail::kFine);
+}
+
+TEST_F(FilesTest, ACoarseBeliefSaysSo) {
+  const LocalBelief coarse{.robot = world::RobotId{3},
+                           .version = {},
+                           .groups = {{"hue", 0, 5}},
+                           .topics = {{world::TopicId{0}, {0}, 1, {{2, 1}}}},
+                           .cells = {{{0, 0, 0}, world::TopicId{0}, {0}, 1.f}},
+                           .detail = Detail::kCoarse};
+  writeBelief(folder_, coarse, world::Grid(1));
+  EXPECT_EQ(readBelief(folder_, world::RobotId{3}, world::Grid(1)).detail, Detail::kCoarse);
+  writeFileAtomically(folder_ + "/topics.json", R"({"detail": "blurred", "groups": [], "topics": []})");
+  EXPECT_THROW(readBelief(folder_, world::RobotId{3}, world::Grid(1)), std::runtime_error);
 }
 
 TEST_F(FilesTest, AGlobalMapComesBackAsItWas) {

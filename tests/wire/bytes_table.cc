@@ -231,6 +231,76 @@ void printTopics(const std::string& run) {
               static_cast<double>(cost.payload) / ideal, cost.datagrams);
 }
 
+// All that a robot would have to tell somebody who knows nothing, of all robots the mean and the most:
+// datagrams with fixed fields, channel and LCM's header.
+void printState(const std::string& run, mapping::Detail detail) {
+  const world::Grid grid(cellSizeOf(run));
+  Cost topics, labels, certainties;
+  size_t robots = 0, most = 0;
+  for (const auto& folder : fs::directory_iterator(run + "/robots")) {
+    const auto robot = world::parseRobotId(folder.path().filename().string());
+    mapping::LocalBelief belief = mapping::readBelief(folder.path(), robot.value(), grid);
+    belief.detail = detail;
+    std::map<mapping::PieceKind, std::vector<mapping::Piece>> pieces;
+    for (mapping::Piece& piece : mapping::wholePieces(belief))
+      pieces[piece.key.kind].push_back(std::move(piece));
+    Cost own;
+    for (const mapping::Piece& whole : pieces[mapping::PieceKind::kTopic]) {
+      for (const mapping::Piece& each : wire::cutToFit(whole, wire::maxPayload(16))) {
+        const size_t size = wire::encode(each, 1, {}).size();
+        add(topics, size, kFixedTopics);
+        add(own, size, kFixedTopics);
+      }
+    }
+    for (auto& [kind, cost] : {std::pair<mapping::PieceKind, Cost&>(mapping::PieceKind::kBrick, labels),
+                               {mapping::PieceKind::kCertainty, certainties}}) {
+      for (const wire::Bytes& message : messagesOf(pieces[kind])) {
+        add(cost, message.size(), kFixedBricks);
+        add(own, message.size(), kFixedBricks);
+      }
+    }
+    ++robots;
+    most = std::max(most, own.datagrams);
+  }
+  std::printf("| %s | %s | %zu | %zu | %zu | %zu | %zu |\n", fs::path(run).filename().string().c_str(),
+              std::string(mapping::toText(detail)).c_str(), topics.datagrams / robots,
+              labels.datagrams / robots, certainties.datagrams / robots,
+              (topics.datagrams + labels.datagrams + certainties.datagrams) / robots, most);
+}
+
+// How far coarse topics are from the exact counts, and what they take: payloads of all robots' topics.
+void printCoarse(const std::string& run) {
+  const world::Grid grid(cellSizeOf(run));
+  size_t float32 = 0;
+  double worst = 0;
+  Cost cost;
+  for (const auto& folder : fs::directory_iterator(run + "/robots")) {
+    const auto robot = world::parseRobotId(folder.path().filename().string());
+    mapping::LocalBelief belief = mapping::readBelief(folder.path(), robot.value(), grid);
+    belief.detail = mapping::Detail::kCoarse;
+    const std::vector<mapping::Piece> pieces = mapping::wholePieces(belief);
+    for (size_t i = 0; i < belief.topics.size(); ++i) {  // topics come first
+      for (const auto& group : belief.groups) float32 += 4 * static_cast<size_t>(group.size);
+      std::map<int32_t, double> exact;
+      double squares = 0, coarse_squares = 0, product = 0;
+      for (const auto& [word, count] : belief.topics[i].words) {
+        exact[word] = count;
+        squares += static_cast<double>(count) * count;
+      }
+      for (const auto& [word, level] : std::get<mapping::TopicPart>(pieces[i].content).words) {
+        coarse_squares += static_cast<double>(level) * level;
+        product += exact.at(word) * level;
+      }
+      worst = std::max(worst, 1 - product / std::sqrt(squares * coarse_squares));
+      for (const mapping::Piece& each : wire::cutToFit(pieces[i], wire::maxPayload(16)))
+        add(cost, wire::encode(each, 1, {}).size(), kFixedTopics);
+    }
+  }
+  std::printf("| %s | %zu | %zu (1/%.0f) | %zu | %.4f |\n", fs::path(run).filename().string().c_str(),
+              float32, cost.payload, static_cast<double>(float32) / static_cast<double>(cost.payload),
+              cost.datagrams, worst);
+}
+
 // CPU milliseconds to encode all bricks once it is known how many fit into each message, and to decode (and
 // check) them.
 void printTimes(const NamedMap& map) {
@@ -269,6 +339,17 @@ void run(std::span<char*> runs) {
         "\n| mission | topics | counts > 0 | float32 | adaptive entropy | ours, payloads | ours, all |");
   if (!runs.empty()) std::puts("|---|---|---|---|---|---|---|");
   for (const char* folder : runs) printTopics(folder);
+  if (!runs.empty()) {
+    std::puts("\n| mission | float32 | coarse topics, payloads | all | greatest 1 - cosine |");
+    std::puts("|---|---|---|---|---|");
+  }
+  for (const char* folder : runs) printCoarse(folder);
+  if (!runs.empty()) {
+    std::puts("\n| mission | detail | topics | labels and times | certainties | all, mean | most |");
+    std::puts("|---|---|---|---|---|---|---|");
+  }
+  for (const char* folder : runs)
+    for (const auto detail : {mapping::Detail::kFine, mapping::Detail::kCoarse}) printState(folder, detail);
   printTimes(fields.back());
 }
 

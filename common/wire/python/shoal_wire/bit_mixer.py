@@ -56,8 +56,8 @@ class Mixer:
         bit = bits.plain(65536 - _clamp(one, 32, 65504))
         error = (65536 if bit else 0) - one
         for k, context in enumerate(contexts):
-            weights[k] += _towards_zero(odds[k] * error, 1 << 14)
+            weights[k] += _towards_zero(odds[k] * error, 1 << 15)
             context[0] += _towards_zero(((65535 if bit else 0) - context[0]) * 2, 2 * context[1] + 3)
-            if context[1] < 60:
+            if context[1] < 250:
                 context[1] += 1
         return bit

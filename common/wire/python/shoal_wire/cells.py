@@ -110,25 +110,5 @@ def times(bits, field, max_size):
     return [period * t for t in column(bits, field, MAX_TIME // period, max_size, ordered=True)]
 
 
-def levels(bits, field):
-    models, result = [Models() for _ in range(6)], []
-    for places in field.near:
-        total = weights = 0
-        closest = [result[place] for place in places[:4] if place >= 0]
-        for place, weight in zip(places, WEIGHTS):
-            if place >= 0:
-                total += weight * result[place]
-                weights += weight
-        expected = (2 * total + weights) // (2 * weights) if weights else (STEPS + 1) // 2
-        if not weights:
-            context = 5
-        elif not closest:
-            context = 4
-        else:
-            spread = (max(closest) - min(closest)) * 32 // (STEPS + 1)
-            context = 0 if spread == 0 else 1 if spread < 3 else 2 if spread < 9 else 3
-        coded = bits.small(models[context])
-        value = expected + (-(coded + 1) // 2 if coded & 1 else coded // 2)
-        require(0 <= value <= STEPS, "a certainty", "bad payload")
-        result.append(value)
-    return result
+def certainties(bits, field):
+    return column(bits, field, STEPS, STEPS + 1)

@@ -148,10 +148,10 @@ def _read_bricks(m, payload):
 def _read_certainties(m, payload):
     bits = Bits(payload)
     bricks, field, ranges = _where(bits, m, "certain_bricks")
-    levels = cells.levels(bits, field)
+    steps = cells.certainties(bits, field)
     bits.end()
     for brick, (begin, end) in zip(bricks, ranges):
-        brick["certainties"] = list(zip(field.cells[begin:end], levels[begin:end]))
+        brick["certainties"] = list(zip(field.cells[begin:end], steps[begin:end]))
     m["certain_bricks"] = bricks
 
 
@@ -218,9 +218,9 @@ def _read_map(m, payload):
     labels = cells.column(bits, field, MAX_LABEL, 4096)
     robots = cells.column(bits, field, MAX_ROBOT, 4096)
     times = cells.times(bits, field, 4096)
-    levels = cells.levels(bits, field)
+    steps = cells.certainties(bits, field)
     bits.end()
-    m["fused_cells"] = list(zip(field.cells, labels, robots, times, levels))
+    m["fused_cells"] = list(zip(field.cells, labels, robots, times, steps))
 
 
 def _read_picture(m, payload):
