@@ -90,7 +90,18 @@ HttpResponse Api::get(const HttpRequest& request) {
     mission["source"] = !where_.node.empty() ? "node" : !where_.run.empty() ? "run" : "log";
     mission["place"] = where_.node + where_.run + where_.log;
     mission["read_only"] = gate_.token.empty();
-    mission["formats"] = exportFormats();
+    mission["formats"] = Json::array();
+    mission["exports"] = Json::array();
+    for (const ExportFormat& f : exportFormats()) {
+      mission["formats"].push_back(f.name);
+      mission["exports"].push_back({{"format", f.name},
+                                    {"file", f.file},
+                                    {"beside", f.beside},
+                                    {"what", f.what},
+                                    {"origin", f.origin == ExportFormat::Origin::kNone    ? "no"
+                                               : f.origin == ExportFormat::Origin::kTaken ? "may"
+                                                                                          : "must"}});
+    }
     return json(mission);
   }
   if (path == "/api/status" || path == "/api/labels") {
@@ -113,14 +124,31 @@ HttpResponse Api::get(const HttpRequest& request) {
   if (path == "/api/node") return asked({{"query", "node"}, {"node", text(request, "node")}});
   if (path == "/api/edits") return asked({{"query", "edits"}});
   if (path == "/api/diff") return diff(request);
-  if (path == "/api/export") {
-    const std::string format = text(request, "format");
-    const auto pictures = format == "png" ? picturesAt(where_) : mapping::LabelPictures{};
-    HttpResponse file{.type = "application/octet-stream", .body = exported(viewOf(where_), format, pictures)};
-    file.file_name = exportFileName(format);
-    return file;
-  }
+  if (path == "/api/export") return exportedMap(request);
   return error(404, "there is nothing of that name; /openapi.json says what there is");
+}
+
+HttpResponse Api::exportedMap(const HttpRequest& request) const {
+  const ExportFormat& format = exportFormat(text(request, "format"));
+  std::optional<GeoOrigin> origin;
+  if (find(request, "latitude") != nullptr || find(request, "longitude") != nullptr) {
+    origin = GeoOrigin{number(request, "latitude"), number(request, "longitude"), 0};
+    if (find(request, "heading") != nullptr) origin->heading_deg = number(request, "heading");
+  } else if (find(request, "heading") != nullptr) {
+    throw std::invalid_argument("\"heading\" goes with \"latitude\" and \"longitude\"");
+  }
+  const std::string* packed = find(request, "packed");
+  if (packed != nullptr && *packed != "zip") throw std::invalid_argument("\"packed\" is zip, or not there");
+  const std::vector<ExportedFile> files = exported(where_, format.name, format.file, origin).files;
+  HttpResponse file{.type = "application/octet-stream", .body = {}};
+  file.file_name = format.file;
+  if (packed == nullptr) {
+    file.body = files.front().content;
+  } else {
+    file.body = zipOf(files);
+    file.file_name += ".zip";
+  }
+  return file;
 }
 
 HttpResponse Api::map(const HttpRequest& request) const {

@@ -27,6 +27,7 @@ class Api {
  private:
   HttpResponse get(const HttpRequest& request);
   HttpResponse map(const HttpRequest& request) const;
+  HttpResponse exportedMap(const HttpRequest& request) const;
   HttpResponse asked(const nlohmann::ordered_json& question) const;
   HttpResponse area(const HttpRequest& request) const;
   HttpResponse diff(const HttpRequest& request) const;

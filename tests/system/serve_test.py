@@ -6,6 +6,7 @@ Usage: serve_test.py BIN_DIR DOCS_DIR [unittest arguments], inside a network nam
 """
 import gzip
 import http.client
+import io
 import json
 import os
 import random
@@ -19,6 +20,7 @@ import tempfile
 import time
 import unittest
 import urllib.parse
+import zipfile
 
 import jsonschema
 
@@ -189,11 +191,26 @@ class Serve(unittest.TestCase):
                 self.assertEqual(self.server.ask(path)[0].status, 400, path)
 
     def test_exports_are_those_of_the_command(self):
-        for format_ in self.server.json("/api/mission")["formats"]:
-            out = os.path.join(self.top, "export." + format_)
-            command("export", "--format", format_, "--out", out, "--run", self.run_dir)
-            with open(out, "rb") as file:
-                self.assertEqual(self.server.ask("/api/export?format=" + format_)[1], file.read(), format_)
+        mission = self.server.json("/api/mission")
+        self.assertEqual([e["format"] for e in mission["exports"]], mission["formats"])
+        for export in mission["exports"]:
+            folder = os.path.join(self.top, "export_" + export["format"])
+            os.mkdir(folder)
+            origin = ("--origin", "43.5", "-70.25", "--heading", "12") if export["origin"] != "no" else ()
+            command("export", "--format", export["format"], "--out", os.path.join(folder, export["file"]), "--run", self.run_dir, *origin)
+            expected = {}
+            for name in os.listdir(folder):
+                with open(os.path.join(folder, name), "rb") as file:
+                    expected[name] = file.read()
+            self.assertEqual(set(expected), {export["file"], *export["beside"]})
+            path = "/api/export?format=" + export["format"] + ("&latitude=43.5&longitude=-70.25&heading=12" if origin else "")
+            self.assertEqual(self.server.ask(path)[1], expected[export["file"]], export)
+            with zipfile.ZipFile(io.BytesIO(self.server.ask(path + "&packed=zip")[1])) as archive:
+                self.assertIsNone(archive.testzip())
+                self.assertEqual({name: archive.read(name) for name in archive.namelist()}, expected, export)
+        for wrong in ("format=kml", "format=ply&latitude=1&longitude=2", "format=geotiff&latitude=1", "format=geotiff&heading=3",
+                      "format=geotiff&latitude=99&longitude=0", "format=geotiff&packed=tar", "format=shp"):
+            self.assertEqual(self.server.ask("/api/export?" + wrong)[0].status, 400, wrong)
 
     def test_strangers_are_turned_away(self):
         ask = self.server.ask
