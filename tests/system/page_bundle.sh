@@ -6,7 +6,7 @@ set -euo pipefail
 sources=$1 scratch=$2
 rm -rf "$scratch"
 mkdir -p "$scratch"
-cp -r "$sources"/{src,package.json,package-lock.json,.npmrc,tsconfig.json,page_test.mjs,mcap_read.mjs} "$scratch/"
+cp -r "$sources"/{src,package.json,package-lock.json,.npmrc,tsconfig.json,page_test.mjs,page_live_test.mjs,page_benchmark.mjs,mcap_read.mjs} "$scratch/"
 cd "$scratch"
 npm ci --ignore-scripts --silent
 npm run --silent check

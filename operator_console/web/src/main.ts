@@ -15,7 +15,9 @@ let mission: Mission | null = null, status: Status | null = null;
 let labels: Label[] = [], traffic: Traffic | null = null, events: Happening[] = [];
 let past: number | null = null; // mission time that is looked at; null: the newest
 let linking: number | null = null; // the label that waits for another to be linked with
-let fitted = false, playing = 0, showRare = false;
+let fitted = false, playing = 0,
+    followed = false, // all of the map is kept in sight, until somebody moves it
+    showRare = false;
 let classes: TruthClass[] = [], truthOf = ""; // what the truth was fetched for
 const pictures = new Pictures();
 const LAYER_TEXT: Record<Layer, string> = { label: "Label", certainty: "Certainty", age: "Age", robot: "Robot", coverage: "Coverage", truth: "Truth" };
@@ -49,7 +51,8 @@ async function refresh(): Promise<void> {
       if (pictures.of !== pictured) pictures.take(pictured, (await ask<{ labels: { label: number; pictures: Picture[] }[] }>("/api/pictures" + at)).labels, at.replace("?", "&"));
       if (map.layer === "truth") void fetchTruth();
       if (past !== null) map.sequence = 0, map.life = ""; // the next newest map comes whole
-      if (!fitted && !map.isEmpty) { fitted = true; if (!restoreView()) map.fit(); }
+      if (!fitted && !map.isEmpty) { fitted = true; followed = !restoreView(); }
+      if (followed && !map.isEmpty) map.fit();
     }
     show();
   } catch (problem) {
@@ -221,13 +224,14 @@ function choose(label: number | null): void {
     return;
   }
   map.selected = label;
-  if (label === null) byId("inspector").hidden = true; else void inspect(label);
+  if (label === null) { byId("inspector").hidden = true; map.covered = 0; } else void inspect(label);
   map.repaint(); show(); remember();
 }
 
 async function inspect(label: number, cell?: HTMLElement): Promise<void> {
   const box = byId("inspector"), l = labels.find((x) => x.label === label);
   box.hidden = false;
+  map.covered = map.canvas.clientWidth > 760 ? box.offsetWidth + 24 : 0;
   const buttons = el("div", { class: "buttons" });
   if (mayWrite() && past === null) buttons.append(
     el("button", { click: () => nameLabel(label) }, l?.name ? "Rename" : "Name"),
@@ -351,15 +355,15 @@ function hands(): void {
   canvas.addEventListener("pointerdown", (e) => { from = [e.clientX, e.clientY]; moved = false; canvas.setPointerCapture(e.pointerId); });
   canvas.addEventListener("pointermove", (e) => {
     if (from) {
-      if (Math.abs(e.clientX - from[0]) + Math.abs(e.clientY - from[1]) > 3 || moved) { moved = true; map.pan(e.clientX - from[0], e.clientY - from[1]); from = [e.clientX, e.clientY]; }
+      if (Math.abs(e.clientX - from[0]) + Math.abs(e.clientY - from[1]) > 3 || moved) { moved = true; followed = false; map.pan(e.clientX - from[0], e.clientY - from[1]); from = [e.clientX, e.clientY]; }
     }
     const [x, y] = map.toWorld(e.offsetX, e.offsetY), cell = map.cellAt(x, y);
     byId("readout").textContent = `${x.toFixed(1)}, ${y.toFixed(1)} m` + (cell ? ` · ${nameOf(cell.label)} · R${String(cell.robot).padStart(2, "0")} at ${seconds(cell.seen)} · ${(100 * cell.certainty).toFixed(0)} % sure` + (map.layer === "truth" && cell.truth !== null ? ` · truly ${classes.find((c) => c.id === cell.truth)?.name ?? cell.truth}` : "") : "");
   });
   canvas.addEventListener("pointerup", (e) => { if (from && !moved) void inspectCell(...map.toWorld(e.offsetX, e.offsetY)); else remember(); from = null; });
-  canvas.addEventListener("wheel", (e) => { e.preventDefault(); map.zoom(Math.exp(-e.deltaY * 0.0015), e.offsetX, e.offsetY); remember(); }, { passive: false });
+  canvas.addEventListener("wheel", (e) => { e.preventDefault(); followed = false; map.zoom(Math.exp(-e.deltaY * 0.0015), e.offsetX, e.offsetY); remember(); }, { passive: false });
   for (const layer of LAYERS) byId("layers").append(el("button", { role: "radio", "data-layer": layer, "aria-checked": String(layer === map.layer), click: () => setLayer(layer) }, LAYER_TEXT[layer]));
-  byId("fit").addEventListener("click", () => { map.fit(); remember(); });
+  byId("fit").addEventListener("click", () => { followed = true; map.fit(); remember(); });
   byId<HTMLInputElement>("tracks").addEventListener("change", (e) => { map.showTracks = (e.target as HTMLInputElement).checked; map.draw(); });
   byId<HTMLInputElement>("names").addEventListener("change", (e) => { map.showRobots = (e.target as HTMLInputElement).checked; map.draw(); });
   byId("undo").addEventListener("click", () => void takeBack());
@@ -386,6 +390,8 @@ function hands(): void {
     const action = act[e.key];
     if (!action) return;
     e.preventDefault(); action();
+    if (e.key.startsWith("Arrow") || "+=-".includes(e.key)) followed = false;
+    if (e.key === "0") followed = true;
     if (e.key.startsWith("Arrow") || "+=-0".includes(e.key)) remember();
   });
 }

@@ -20,6 +20,7 @@ export class MapView {
   center = { x: 0, y: 0 }; scale = 4; // metres; pixels a metre
   tracks: Track[] = []; nodes: Node[] = [];
   lastFrameMs = 0;
+  covered = 0; // pixels at the right that something lies over
   private tiles = new Map<string, Tile>();
   private truth = new Map<string, Tile>(); // with classes as labels
   private truthColors = new Map<number, number>();
@@ -233,8 +234,9 @@ export class MapView {
     if (x0 > x1) return;
     this.center = { x: ((x0 + x1) / 2) * this.cellSize, y: ((y0 + y1) / 2) * this.cellSize };
     // The bar above the map hides nothing.
-    const bar = 52, height = Math.max(50, this.canvas.clientHeight - bar);
-    this.scale = 0.95 * Math.min(this.canvas.clientWidth / ((x1 - x0 + 1) * this.cellSize), height / ((y1 - y0 + 1) * this.cellSize));
+    const bar = 52, height = Math.max(50, this.canvas.clientHeight - bar), width = Math.max(50, this.canvas.clientWidth - this.covered);
+    this.scale = 0.95 * Math.min(width / ((x1 - x0 + 1) * this.cellSize), height / ((y1 - y0 + 1) * this.cellSize));
+    this.center.x += this.covered / 2 / this.scale;
     this.center.y += bar / 2 / this.scale;
     this.draw();
   }
