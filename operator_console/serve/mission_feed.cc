@@ -211,13 +211,12 @@ void MissionFeed::watchNode() {
     const auto last = now();
     const std::string is = status.at("digest").dump() + status.at("labels").dump();
     if (is != digest && Clock::now() >= next_map) {
-      const auto begun = Clock::now();
-      const mapping::MissionView view = viewOf(where_);
+      const mapping::MissionView& view = node_map_.refresh(where_.node, status);
       auto pictures = mapping::picturesFrom(
           fusion_node::askNode(where_.node, {{"query", "pictures"}, {"most", kMostPictures}}));
       auto moment = momentOf(view, std::move(pictures), std::max(time_s, timeOf(view)), last.get());
       digest = is;
-      next_map = Clock::now() + (Clock::now() - begun) * kLeisure;
+      next_map = Clock::now() + node_map_.asking() * kLeisure;
       {
         const std::lock_guard lock(mutex_);
         chronicle_.hearLabels(moment->time_s, moment->labels);

@@ -18,6 +18,7 @@
 #include "operator_console/mission_sources.h"
 #include "operator_console/serve/chronicle.h"
 #include "operator_console/serve/map_tiles.h"
+#include "operator_console/serve/node_map.h"
 #include "shoal/mapping/held_pictures.h"
 
 namespace shoal::console {
@@ -80,6 +81,7 @@ class MissionFeed {
   std::optional<double> base_s_;
   std::vector<std::shared_ptr<const Moment>> moments_;  // by time
   Chronicle chronicle_;
+  NodeMap node_map_;  // of the feed's thread
   std::thread thread_;
 };
 

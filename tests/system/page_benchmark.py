@@ -18,6 +18,7 @@ import time
 BIN, WEB = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
 SECONDS = sys.argv[3] if len(sys.argv) > 3 else "20"
 SIDE, ROBOTS, CELL, LABELS = 1000, 12, 0.25, 24
+BLOCK = 64
 FOOTPRINT = 16, 12  # cells that a robot sees at once
 
 
@@ -26,7 +27,7 @@ class MadeNode(threading.Thread):
 
     def __init__(self, folder):
         super().__init__(daemon=True)
-        self.started, self.version = time.monotonic(), 0
+        self.started, self.version, self.changed = time.monotonic(), 0, {}  # blocks by the version in which they changed
         self.cells = [[self.line(i, j, i // 90 * 7 + j // 70, 0, 1.0) for i in range(SIDE)] for j in range(SIDE)]
         self.rows = ["\\n".join(row) for row in self.cells]
         self.socket = socket.socket(socket.AF_UNIX)
@@ -54,6 +55,7 @@ class MadeNode(threading.Thread):
                 for j in range(y, y + FOOTPRINT[1]):
                     for i in range(x, x + FOOTPRINT[0]):
                         self.cells[j][i] = self.line(i, j, i * 31 // 40 + j // 9 + self.version // 40, robot, self.version / 5)
+                        self.changed[i // BLOCK, j // BLOCK] = self.version
                     changed.add(j)
             for j in changed:
                 self.rows[j] = "\\n".join(self.cells[j])
@@ -69,6 +71,17 @@ class MadeNode(threading.Thread):
         return {"mission_id": 1, "cell_size_m": CELL, "cells": SIDE * SIDE, "labels": LABELS,
                 "digest": {"state": f"{self.version:016x}", "map": f"{self.version:016x}"}, "nodes": nodes}
 
+    def map(self, has):
+        """As fusion_node: whole, or the blocks of 64 x 64 columns that changed since."""
+        changes, cells = "", "\\n".join(self.rows)
+        if has:
+            blocks = [block for block, version in self.changed.items() if version > int(has, 16)]
+            changes = f'"since": "{has}", "blocks": {json.dumps(blocks)}, '
+            cells = "\\n".join("\\n".join(self.cells[j][x * BLOCK:(x + 1) * BLOCK]) for x, y in blocks
+                              for j in range(y * BLOCK, min(SIDE, (y + 1) * BLOCK)))
+        return (f'{{"cell_size_m": {CELL}, "digest": "{self.version:016x}", {changes}"labels_csv": "{self.labels}", '
+                f'"global_map_csv": "x_m,y_m,z_m,label,robot,seen_s,certainty\\n{cells}\\n"}}\n')
+
     def run(self):
         while True:
             link = self.socket.accept()[0]
@@ -76,9 +89,7 @@ class MadeNode(threading.Thread):
                 question = json.loads(link.makefile("r", encoding="utf-8").readline())
                 self.move()
                 if question["query"] == "map":
-                    header = "x_m,y_m,z_m,label,robot,seen_s,certainty\\n"
-                    link.sendall((f'{{"cell_size_m": {CELL}, "labels_csv": "{self.labels}", "global_map_csv": "{header}'
-                                  + "\\n".join(self.rows) + '\\n"}\n').encode())
+                    link.sendall(self.map(question.get("has", "")).encode())
                 else:
                     answer = {"status": self.status(), "pictures": {"labels": []}}.get(question["query"], {"error": "made up"})
                     link.sendall((json.dumps(answer) + "\n").encode())
