@@ -227,6 +227,8 @@ Json Node::answer(const Json& question) {
   state_.refreshMap();
   const mapping::MissionView known = view();
   const auto beliefs = [this]() -> const mapping::BeliefStore& { return state_.beliefs(); };
+  if (question.value("query", "") == "map" && question.contains("has"))
+    return map_changes_.answer(known, question);
   Json answer =
       mapping::answer({known, beliefs, state_.matcher(), [this] { return state_.events(); }}, question);
   if (question.value("query", "") == "status" && !answer.contains("error")) {

@@ -15,6 +15,7 @@
 #include "shoal/comms/bus.h"
 #include "shoal/comms/mission_clock.h"
 #include "shoal/comms/sender.h"
+#include "shoal/mapping/map_changes.h"
 
 namespace shoal::fusion_node {
 
@@ -71,6 +72,7 @@ class Node {
   Repair repair_;
   std::optional<NodeMemory> memory_;
   std::optional<QueryServer> queries_;
+  mapping::MapChanges map_changes_;  // as consoles were told
   SilenceAlarm silence_;
   std::map<std::string, size_t> num_chunks_;  // in the send queue, by channel
   size_t warned_of_strangers_ = 0;

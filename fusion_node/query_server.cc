@@ -107,10 +107,11 @@ bool QueryServer::serve(int fd, Client& client) {
     const Json question = Json::parse(client.inbox.substr(0, line_end), nullptr, false);
     client.outbox = answerTo(question).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
   }
-  while (!client.outbox.empty()) {
-    const ssize_t n = ::send(fd, client.outbox.data(), client.outbox.size(), MSG_NOSIGNAL);
+  while (client.sent < client.outbox.size()) {
+    const ssize_t n =
+        ::send(fd, client.outbox.data() + client.sent, client.outbox.size() - client.sent, MSG_NOSIGNAL);
     if (n < 0) return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR;
-    client.outbox.erase(0, static_cast<size_t>(n));
+    client.sent += static_cast<size_t>(n);
   }
   return false;
 }

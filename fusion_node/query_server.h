@@ -33,6 +33,7 @@ class QueryServer {
  private:
   struct Client {
     std::string inbox, outbox;
+    size_t sent = 0;  // bytes of outbox
     int polls = 0;
   };
   bool serve(int fd, Client& client);

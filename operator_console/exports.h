@@ -1,24 +1,43 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "shoal/mapping/held_pictures.h"
-#include "shoal/mapping/queries.h"
+#include "operator_console/export/geo_frame.h"
+#include "operator_console/export/zip.h"
+#include "operator_console/mission_sources.h"
 
 namespace shoal::console {
 
-/// Formats that a map is written in, as --format takes them.
-const std::vector<std::string>& exportFormats();
+/// A format that a map is written in.
+struct ExportFormat {
+  std::string name;                      ///< as --format takes it
+  std::string file;                      ///< what its file is called: "map.ply"
+  std::string what;                      ///< for people
+  std::vector<std::string> beside = {};  ///< what more comes with it
+  enum class Origin { kNone, kTaken, kNeeded } origin = Origin::kNone;
+};
 
-/// What a file of that format is called: "map.ply".
-std::string exportFileName(const std::string& format);
+const std::vector<ExportFormat>& exportFormats();
 
-/// The map as a file's content. Coordinates are metres of the mission frame. The legend of a picture shows
-/// `pictures` of labels.
-/// @throws std::invalid_argument naming a format that is not one of exportFormats().
-std::string exported(const mapping::MissionView& view, const std::string& format,
-                     const mapping::LabelPictures& pictures = {});
+/// The format of that name. @throws std::invalid_argument naming those that there are.
+const ExportFormat& exportFormat(const std::string& name);
+
+/// What an export wrote.
+struct Export {
+  std::vector<ExportedFile> files;
+  size_t cells = 0;  ///< of the map
+};
+
+/// The map of a mission as files, the one that was asked for first, called `file`; those beside it are called
+/// after it. Coordinates are metres of the mission frame, and with an origin, in the formats that take one,
+/// places on Earth (WGS 84).
+/// @throws std::invalid_argument for an unknown format, a wrong origin, one that the format does not take, or
+/// none
+///         where it needs one; std::runtime_error as viewOf(), and for a map too large for the format.
+Export exported(const Where& where, const std::string& format, const std::string& file,
+                const std::optional<GeoOrigin>& origin = {});
 
 }  // namespace shoal::console

@@ -2,24 +2,12 @@
 #include "operator_console/ply.h"
 
 #include <algorithm>
-#include <bit>
 #include <cstdint>
 
+#include "operator_console/export/little_endian.h"
 #include "operator_console/render.h"
 
 namespace shoal::console {
-namespace {
-
-template <typename Integer>
-void addLittleEndian(std::string& bytes, Integer value) {
-  for (size_t i = 0; i < sizeof value; ++i) bytes += static_cast<char>(value >> (8 * i) & 0xff);
-}
-
-void add(std::string& bytes, double value) { addLittleEndian(bytes, std::bit_cast<uint64_t>(value)); }
-void add(std::string& bytes, float value) { addLittleEndian(bytes, std::bit_cast<uint32_t>(value)); }
-
-}  // namespace
-
 std::string globalMapPly(const mapping::GlobalMap& map, const world::Grid& grid) {
   std::string ply =
       "ply\nformat binary_little_endian 1.0\ncomment metres of the mission frame\nelement vertex " +
@@ -31,12 +19,12 @@ std::string globalMapPly(const mapping::GlobalMap& map, const world::Grid& grid)
   for (const mapping::GlobalCell& c : map.cells) newest = std::max(newest, c.seen);
   for (const mapping::GlobalCell& c : map.cells) {
     const Eigen::Vector3d p = grid.centerOf(c.cell);
-    for (const double coordinate : {p.x(), p.y(), p.z()}) add(ply, coordinate);
+    for (const double coordinate : {p.x(), p.y(), p.z()}) addLittleEndian(ply, coordinate);
     for (const uint8_t channel : colorOf(c.label)) ply += static_cast<char>(channel);
-    add(ply, static_cast<double>(number(c.label)));
-    add(ply, c.certainty);
-    add(ply, static_cast<float>(number(c.robot)));
-    add(ply, static_cast<float>(newest.seconds() - c.seen.seconds()));
+    addLittleEndian(ply, static_cast<double>(number(c.label)));
+    addLittleEndian(ply, c.certainty);
+    addLittleEndian(ply, static_cast<float>(number(c.robot)));
+    addLittleEndian(ply, static_cast<float>(newest.seconds() - c.seen.seconds()));
   }
   return ply;
 }

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
+#include <vector>
 
 #include <spdlog/fmt/fmt.h>
 
@@ -25,6 +28,8 @@ struct Question {
   Asking asking;
   double x = 0, y = 0;
   std::string format, out;
+  std::vector<double> origin;  // latitude, longitude
+  double heading = 0;
 };
 
 void labels(Question& q) {
@@ -84,15 +89,22 @@ void exportMap(Question& q) {
     }
     return;
   }
-  const mapping::MissionView view = viewOf(whereOf(q.asking));
-  const std::string content =
-      exported(view, q.format, q.format == "png" ? picturesAt(whereOf(q.asking)) : mapping::LabelPictures{});
-  mapping::writeFileAtomically(q.out, content);
+  std::optional<GeoOrigin> origin;
+  if (!q.origin.empty()) origin = GeoOrigin{q.origin[0], q.origin[1], q.heading};
+  if (q.heading != 0 && !origin)
+    throw std::invalid_argument("--heading says how the frame lies at --origin: give both");
+  const std::filesystem::path out = q.out;
+  Json files = Json::array();
+  const Export done = exported(whereOf(q.asking), q.format, out.filename(), origin);
+  for (const ExportedFile& file : done.files) {
+    files.push_back((out.parent_path() / file.name).string());
+    mapping::writeFileAtomically(files.back().get<std::string>(), file.content);
+  }
   if (q.asking.json) {
-    std::cout << Json{{"format", q.format}, {"file", q.out}, {"cells", view.map.cells.size()}}.dump(2)
+    std::cout << Json{{"format", q.format}, {"file", q.out}, {"files", files}, {"cells", done.cells}}.dump(2)
               << '\n';
   } else {
-    fmt::print("{} cells written to {}\n", view.map.cells.size(), q.out);
+    fmt::print("{} cells written to {}\n", done.cells, joined(files, ", "));
   }
 }
 
@@ -125,18 +137,40 @@ void addQuestionCommands(CLI::App& app, Action& chosen) {
   const auto [export_command, export_question] = add("export", "the map as a file", exportMap);
   export_command
       ->add_option("--format", export_question->format,
-                   "csv (cells), labels (CSV of the legend), geojson (patches), ply (points), png, or\n"
-                   "pictures (a folder with what each label looks like)")
+                   [] {
+                     std::string said;
+                     for (const ExportFormat& f : exportFormats()) said += f.name + ": " + f.what + "\n";
+                     return said + "pictures: a folder with what each label looks like";
+                   }())
       ->required()
       ->check(CLI::IsMember([] {
-        std::vector<std::string> formats = exportFormats();
+        std::vector<std::string> formats;
+        for (const ExportFormat& f : exportFormats()) formats.push_back(f.name);
         formats.push_back("pictures");
         return formats;
       }()));
-  export_command->add_option("--out", export_question->out, "file to write")->required();
+  export_command
+      ->add_option("--out", export_question->out,
+                   "file to write; more files of geojson and geotiff are written beside it, called after it")
+      ->required();
+  export_command
+      ->add_option("--origin", export_question->origin,
+                   "latitude and longitude of (0, 0), degrees of WGS 84: geojson, geotiff and mcap lie on "
+                   "Earth then,\n"
+                   "kml has to")
+      ->type_name("LAT LON")
+      ->expected(2);
+  export_command
+      ->add_option("--heading", export_question->heading,
+                   "with --origin: where +Y points, degrees clockwise from true north")
+      ->capture_default_str();
   export_command->footer(
-      "Coordinates are metres of the mission frame in every format.\n\n"
-      "  operator_console export --format ply --out map.ply --log runs/a/mission.lcmlog");
+      "Coordinates are metres of the mission frame; with --origin those of a transverse Mercator projection "
+      "around "
+      "it.\n\n"
+      "  operator_console export --format ply --out map.ply --log runs/a/mission.lcmlog\n"
+      "  operator_console export --format geotiff --out reef.tif --origin -17.53 177.21 --heading 35 --run "
+      "runs/a");
 }
 
 }  // namespace shoal::console

@@ -23,6 +23,7 @@ namespace {
 struct Serving {
   Asking asking;
   HttpOptions http;
+  TruthHint hint;
   bool read_only = false;
 };
 
@@ -45,7 +46,8 @@ int serve(const Serving& flags) {
     if (server != nullptr) server->publish(api->news());
   });
   const auto now = std::chrono::system_clock::now().time_since_epoch();
-  Api answers(where, *feed, gate,
+  TruthLayer truth(where, flags.hint);
+  Api answers(where, *feed, truth, gate,
               static_cast<uint64_t>(std::chrono::duration_cast<std::chrono::microseconds>(now).count()));
   HttpServer http(flags.http, [&answers](const HttpRequest& request) { return answers.answer(request); });
   {
@@ -82,6 +84,11 @@ void addServeCommand(CLI::App& app, Action& chosen) {
   command
       ->add_option("--host", flags->http.host,
                    "address of this machine to listen on; 0.0.0.0: all of them, for anybody who can reach it")
+      ->capture_default_str();
+  command->add_option(
+      "--world", flags->hint.world,
+      "where the mission takes place, for the layer \"truth\"; a finished run says it itself");
+  command->add_option("--seed", flags->hint.seed, "of the mission, for --world with --node and --log")
       ->capture_default_str();
   command->add_flag("--read-only", flags->read_only, "nobody may name, link or exclude");
   command->footer(

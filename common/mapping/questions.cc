@@ -19,6 +19,7 @@ using Json = nlohmann::ordered_json;
 
 // As far as mission times go, whatever a stranger asks.
 constexpr double kFarthestS = 4e12;
+constexpr int64_t kMostPictures = 1000;  // of a label
 
 PatchFilter filterOf(const Json& question) {
   PatchFilter filter;
@@ -32,9 +33,12 @@ PatchFilter filterOf(const Json& question) {
   return filter;
 }
 
-Json picturesOf(const Witness& witness) {
+Json picturesOf(const Witness& witness, const Json& question) {
+  const int64_t most = question.value("most", int64_t{4});
+  if (most < 1 || most > kMostPictures)
+    throw std::invalid_argument("most lies in [1, " + std::to_string(kMostPictures) + "]");
   const BeliefStore& beliefs = witness.beliefs();  // first: of a finished run, it completes the map
-  return picturesAnswer(picturesOfLabels(witness.view.map, beliefs));
+  return picturesAnswer(picturesOfLabels(witness.view.map, beliefs, static_cast<size_t>(most)));
 }
 
 Json mapAnswer(const MissionView& view) {
@@ -53,7 +57,7 @@ Json answer(const Witness& witness, const Json& question) {
     if (query == "status") return statusAnswer(view);
     if (query == "labels") return labelsAnswer(view);
     if (query == "map") return mapAnswer(view);
-    if (query == "pictures") return picturesOf(witness);
+    if (query == "pictures") return picturesOf(witness, question);
     if (query == "at") return atAnswer(view, witness.beliefs(), question.at("x"), question.at("y"));
     if (query == "area") return areaAnswer(view, question.at("label"), filterOf(question));
     if (query == "why") return whyAnswer(view, witness.beliefs(), witness.matcher, question.at("label"));

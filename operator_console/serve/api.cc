@@ -9,10 +9,12 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include "fusion_node/picture_files.h"
 #include "operator_console/asking.h"
 #include "operator_console/exports.h"
 #include "operator_console/label_pictures.h"
 #include "operator_console/recorded_mission.h"
+#include "operator_console/render.h"
 #include "operator_console/serve/page_files.h"
 #include "shoal/mapping/area_answer.h"
 #include "shoal/mapping/diff_answer.h"
@@ -53,8 +55,14 @@ double number(const HttpRequest& request, const char* key) { return number(text(
 
 }  // namespace
 
-Api::Api(Where where, MissionFeed& feed, Gate gate, uint64_t life)
-    : where_(std::move(where)), feed_(feed), gate_(std::move(gate)), life_(life) {}
+Api::Api(Where where, MissionFeed& feed, TruthLayer& truth, Gate gate, uint64_t life)
+    : where_(std::move(where)), feed_(feed), truth_(truth), gate_(std::move(gate)), life_(life) {}
+
+// Of the mission time "at", or the newest; nullptr before the first.
+std::shared_ptr<const Moment> Api::momentFor(const HttpRequest& request) const {
+  const std::string* time = find(request, "at");
+  return time == nullptr ? feed_.now() : feed_.at(number(*time, "at"));
+}
 
 std::string Api::news() const {
   Json news = feed_.report();
@@ -90,12 +98,24 @@ HttpResponse Api::get(const HttpRequest& request) {
     mission["source"] = !where_.node.empty() ? "node" : !where_.run.empty() ? "run" : "log";
     mission["place"] = where_.node + where_.run + where_.log;
     mission["read_only"] = gate_.token.empty();
-    mission["formats"] = exportFormats();
+    mission["truth"] = truth_.isNamed();
+    mission["formats"] = Json::array();
+    mission["exports"] = Json::array();
+    for (const ExportFormat& f : exportFormats()) {
+      mission["formats"].push_back(f.name);
+      mission["exports"].push_back({{"format", f.name},
+                                    {"file", f.file},
+                                    {"beside", f.beside},
+                                    {"what", f.what},
+                                    {"origin", f.origin == ExportFormat::Origin::kNone    ? "no"
+                                               : f.origin == ExportFormat::Origin::kTaken ? "may"
+                                                                                          : "must"}});
+    }
     return json(mission);
   }
   if (path == "/api/status" || path == "/api/labels") {
     const std::string* time = find(request, "at");
-    const auto moment = time == nullptr ? feed_.now() : feed_.at(number(*time, "at"));
+    const auto moment = momentFor(request);
     if (!moment) return error(503, "nothing is known of the mission yet");
     if (path == "/api/status") return json(moment->status);
     Json labels = moment->labels;
@@ -113,19 +133,86 @@ HttpResponse Api::get(const HttpRequest& request) {
   if (path == "/api/node") return asked({{"query", "node"}, {"node", text(request, "node")}});
   if (path == "/api/edits") return asked({{"query", "edits"}});
   if (path == "/api/diff") return diff(request);
-  if (path == "/api/export") {
-    const std::string format = text(request, "format");
-    const auto pictures = format == "png" ? picturesAt(where_) : mapping::LabelPictures{};
-    HttpResponse file{.type = "application/octet-stream", .body = exported(viewOf(where_), format, pictures)};
-    file.file_name = exportFileName(format);
-    return file;
-  }
+  if (path == "/api/pictures") return pictures(request);
+  if (path == "/api/picture") return picture(request);
+  if (path == "/api/classes" || path == "/api/truth") return truth(request);
+  if (path == "/api/export") return exportedMap(request);
   return error(404, "there is nothing of that name; /openapi.json says what there is");
+}
+
+// Which pictures there are of each label's topics; picture() has one of them.
+HttpResponse Api::pictures(const HttpRequest& request) const {
+  const auto moment = momentFor(request);
+  if (!moment) return error(503, "nothing is known of the mission yet");
+  Json labels = Json::array();
+  for (const auto& [label, held] : *moment->pictures) {
+    Json row{{"label", world::number(label)}, {"pictures", Json::array()}};
+    for (const mapping::HeldPicture& p : held) {
+      row["pictures"].push_back({{"robot", world::name(p.robot)},
+                                 {"topic", world::number(p.topic)},
+                                 {"example", p.number},
+                                 {"seen_s", p.seen.seconds()},
+                                 {"layers", p.layers.size()},
+                                 {"num_layers", p.num_layers}});
+    }
+    labels.push_back(std::move(row));
+  }
+  return json({{"labels", std::move(labels)}});
+}
+
+HttpResponse Api::picture(const HttpRequest& request) const {
+  const auto moment = momentFor(request);
+  if (!moment) return error(503, "nothing is known of the mission yet");
+  const std::string robot = text(request, "robot");
+  const double topic = number(request, "topic"), example = number(request, "example");
+  for (const auto& [label, held] : *moment->pictures) {
+    for (const mapping::HeldPicture& p : held) {
+      if (world::name(p.robot) != robot || world::number(p.topic) != topic || p.number != example) continue;
+      return {.type = "image/png", .body = encodePng(fusion_node::pixelsOf(p))};
+    }
+  }
+  return error(404, "nobody has told of such a picture; /api/pictures lists those that there are");
+}
+
+HttpResponse Api::truth(const HttpRequest& request) const {
+  const auto moment = momentFor(request);
+  if (!moment) return error(503, "nothing is known of the mission yet");
+  if (request.path == "/api/classes") {
+    const Json classes = truth_.classes();
+    return classes.is_null() ? error(503, "the truth is being found out") : json(classes);
+  }
+  const auto tiles = truth_.tiles(*moment);
+  if (!tiles) return error(503, "the truth is being found out");
+  return {.type = "application/octet-stream",
+          .body = encodeTiles(*tiles, 0, moment->cell_size_m, moment->base_s, moment->sequence, life_)};
+}
+
+HttpResponse Api::exportedMap(const HttpRequest& request) const {
+  const ExportFormat& format = exportFormat(text(request, "format"));
+  std::optional<GeoOrigin> origin;
+  if (find(request, "latitude") != nullptr || find(request, "longitude") != nullptr) {
+    origin = GeoOrigin{number(request, "latitude"), number(request, "longitude"), 0};
+    if (find(request, "heading") != nullptr) origin->heading_deg = number(request, "heading");
+  } else if (find(request, "heading") != nullptr) {
+    throw std::invalid_argument("\"heading\" goes with \"latitude\" and \"longitude\"");
+  }
+  const std::string* packed = find(request, "packed");
+  if (packed != nullptr && *packed != "zip") throw std::invalid_argument("\"packed\" is zip, or not there");
+  const std::vector<ExportedFile> files = exported(where_, format.name, format.file, origin).files;
+  HttpResponse file{.type = "application/octet-stream", .body = {}};
+  file.file_name = format.file;
+  if (packed == nullptr) {
+    file.body = files.front().content;
+  } else {
+    file.body = zipOf(files);
+    file.file_name += ".zip";
+  }
+  return file;
 }
 
 HttpResponse Api::map(const HttpRequest& request) const {
   const std::string* time = find(request, "at");
-  const auto moment = time == nullptr ? feed_.now() : feed_.at(number(*time, "at"));
+  const auto moment = momentFor(request);
   if (!moment) return error(503, "nothing is known of the mission yet");
   uint64_t since = 0;
   const std::string* life = find(request, "life");

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 
 #include "operator_console/mission_sources.h"
 #include "operator_console/serve/gate.h"
 #include "operator_console/serve/http_server.h"
 #include "operator_console/serve/mission_feed.h"
+#include "operator_console/serve/truth_layer.h"
 
 namespace shoal::console {
 
@@ -15,8 +17,9 @@ namespace shoal::console {
 /// mission as the console's commands put them, so that terminal and page get the same answers.
 class Api {
  public:
-  /// `feed` outlives it. @param life  changes with every start of the server: sequences of another are void.
-  Api(Where where, MissionFeed& feed, Gate gate, uint64_t life);
+  /// `feed` and `truth` outlive it. @param life  changes with every start of the server: sequences of another
+  /// are void.
+  Api(Where where, MissionFeed& feed, TruthLayer& truth, Gate gate, uint64_t life);
 
   /// Answers anything. Thread-safe.
   HttpResponse answer(const HttpRequest& request);
@@ -27,6 +30,11 @@ class Api {
  private:
   HttpResponse get(const HttpRequest& request);
   HttpResponse map(const HttpRequest& request) const;
+  HttpResponse pictures(const HttpRequest& request) const;
+  HttpResponse picture(const HttpRequest& request) const;
+  HttpResponse truth(const HttpRequest& request) const;
+  std::shared_ptr<const Moment> momentFor(const HttpRequest& request) const;
+  HttpResponse exportedMap(const HttpRequest& request) const;
   HttpResponse asked(const nlohmann::ordered_json& question) const;
   HttpResponse area(const HttpRequest& request) const;
   HttpResponse diff(const HttpRequest& request) const;
@@ -34,6 +42,7 @@ class Api {
 
   Where where_;
   MissionFeed& feed_;
+  TruthLayer& truth_;
   Gate gate_;
   uint64_t life_;
 };

@@ -10,6 +10,7 @@
 #include <spdlog/spdlog.h>
 
 #include "fusion_node/query_server.h"
+#include "operator_console/label_pictures.h"
 #include "operator_console/recorded_mission.h"
 #include "operator_console/render.h"
 #include "shoal/comms/log_reader.h"
@@ -26,6 +27,7 @@ constexpr auto kAskEvery = std::chrono::milliseconds(200);
 constexpr int kLeisure = 4;  // a map is asked for again after 4 times what it took: nodes have other work
 constexpr size_t kMaxMoments = 64;      // of a live mission
 constexpr size_t kHistoryMoments = 32;  // of a recording
+constexpr size_t kMostPictures = 64;    // of a label
 
 double timeOf(const mapping::MissionView& view) {
   double time_s = 0;
@@ -97,6 +99,7 @@ Json MissionFeed::report() const {
   return {{"phase", phase_},
           {"problem", problem_},
           {"sequence", moments_.empty() ? 0 : moments_.back()->sequence},
+          {"pictures", moments_.empty() ? 0 : moments_.back()->pictures_sequence},
           {"time_s", moments_.empty() ? 0.0 : std::round(moments_.back()->time_s * 1e3) / 1e3},
           {"times_s", std::move(times)}};
 }
@@ -127,7 +130,8 @@ void MissionFeed::setPhase(const std::string& phase, const std::string& problem)
   on_change_();
 }
 
-std::shared_ptr<Moment> MissionFeed::momentOf(const mapping::MissionView& view, double time_s,
+std::shared_ptr<Moment> MissionFeed::momentOf(const mapping::MissionView& view,
+                                              mapping::LabelPictures pictures, double time_s,
                                               const Moment* before) {
   if (!base_s_ && !view.map.cells.empty()) {
     const auto oldest = std::ranges::min_element(view.map.cells, {}, &mapping::GlobalCell::seen);
@@ -143,6 +147,13 @@ std::shared_ptr<Moment> MissionFeed::momentOf(const mapping::MissionView& view, 
       tilesOf(view.map, moment->base_s, moment->sequence, before != nullptr ? before->tiles : TileMap());
   moment->status = mapping::statusAnswer(view);
   moment->labels = coloredLabels(view);
+  if (before != nullptr && *before->pictures == pictures) {
+    moment->pictures = before->pictures;
+    moment->pictures_sequence = before->pictures_sequence;
+  } else {
+    moment->pictures = std::make_shared<const mapping::LabelPictures>(std::move(pictures));
+    moment->pictures_sequence = moment->sequence;
+  }
   return moment;
 }
 
@@ -200,11 +211,12 @@ void MissionFeed::watchNode() {
     const auto last = now();
     const std::string is = status.at("digest").dump() + status.at("labels").dump();
     if (is != digest && Clock::now() >= next_map) {
-      const auto begun = Clock::now();
-      const mapping::MissionView view = viewOf(where_);
-      auto moment = momentOf(view, std::max(time_s, timeOf(view)), last.get());
+      const mapping::MissionView& view = node_map_.refresh(where_.node, status);
+      auto pictures = mapping::picturesFrom(
+          fusion_node::askNode(where_.node, {{"query", "pictures"}, {"most", kMostPictures}}));
+      auto moment = momentOf(view, std::move(pictures), std::max(time_s, timeOf(view)), last.get());
       digest = is;
-      next_map = Clock::now() + (Clock::now() - begun) * kLeisure;
+      next_map = Clock::now() + node_map_.asking() * kLeisure;
       {
         const std::lock_guard lock(mutex_);
         chronicle_.hearLabels(moment->time_s, moment->labels);
@@ -234,7 +246,7 @@ void MissionFeed::lookAtFiles() {
   if (!where_.run.empty()) {
     const mapping::MissionView view = viewOfRun(where_.run);
     const auto last = now();
-    auto moment = momentOf(view, timeOf(view), last.get());
+    auto moment = momentOf(view, picturesOfRun(where_.run), timeOf(view), last.get());
     {
       const std::lock_guard lock(mutex_);
       moments_ = {std::move(moment)};
@@ -262,7 +274,9 @@ void MissionFeed::readHistory() {
     fusion_node::MissionState state = heard;
     for (const mapping::Edit& edit : edits) state.apply(mapping::pieceOf(edit));
     state.refreshMap();
-    moments.push_back(momentOf(state.view(), time_s, moments.empty() ? nullptr : moments.back().get()));
+    const mapping::MissionView view = state.view();
+    moments.push_back(momentOf(view, mapping::picturesOfLabels(view.map, state.beliefs(), kMostPictures),
+                               time_s, moments.empty() ? nullptr : moments.back().get()));
     chronicle.hearLabels(time_s, moments.back()->labels);
   };
   bool is_first = true;

@@ -18,6 +18,8 @@
 #include "operator_console/mission_sources.h"
 #include "operator_console/serve/chronicle.h"
 #include "operator_console/serve/map_tiles.h"
+#include "operator_console/serve/node_map.h"
+#include "shoal/mapping/held_pictures.h"
 
 namespace shoal::console {
 
@@ -28,7 +30,9 @@ struct Moment {
   double time_s = 0;   ///< mission time
   double cell_size_m = 1, base_s = 0;
   TileMap tiles;
-  nlohmann::ordered_json status, labels;  ///< as the questions of these names are answered
+  nlohmann::ordered_json status, labels;                   ///< as the questions of these names are answered
+  std::shared_ptr<const mapping::LabelPictures> pictures;  ///< of every topic
+  uint64_t pictures_sequence = 0;  ///< of the map with which they became what they are
 };
 
 /// Keeps looking at a mission from a thread of its own: asks a running node, or reads files once and again
@@ -48,7 +52,8 @@ class MissionFeed {
   /// The last one not after that mission time; the first when there is none; nullptr before the first.
   std::shared_ptr<const Moment> at(double time_s) const;
 
-  /// {"phase": "live"|"lost"|"reading"|"whole", "problem", "sequence", "time_s", "times_s": [..]}
+  /// {"phase": "live"|"lost"|"reading"|"whole", "problem", "sequence", "pictures", "time_s",
+  /// "times_s": [..]}, "pictures" being the newest's pictures_sequence.
   nlohmann::ordered_json report() const;
   /// Tracks, traffic and events up to now.
   nlohmann::ordered_json chronicle(const std::string& what) const;
@@ -61,7 +66,8 @@ class MissionFeed {
   void watchNode();
   void lookAtFiles();
   void readHistory();
-  std::shared_ptr<Moment> momentOf(const mapping::MissionView& view, double time_s, const Moment* before);
+  std::shared_ptr<Moment> momentOf(const mapping::MissionView& view, mapping::LabelPictures pictures,
+                                   double time_s, const Moment* before);
   void add(std::shared_ptr<const Moment> moment);
   void setPhase(const std::string& phase, const std::string& problem = {});
 
@@ -75,6 +81,7 @@ class MissionFeed {
   std::optional<double> base_s_;
   std::vector<std::shared_ptr<const Moment>> moments_;  // by time
   Chronicle chronicle_;
+  NodeMap node_map_;  // of the feed's thread
   std::thread thread_;
 };
 

@@ -2,6 +2,7 @@
 // The page in Debian's chromium. Usage: node page_test.mjs URL_WITH_TOKEN [FOLDER FOR SCREENSHOTS]
 // The mission is a recording of three robots over a reef. Exit code 1 and what was expected when something fails.
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import { chromium } from "playwright-core";
 
 const [url, folder] = process.argv.slice(2);
@@ -34,11 +35,23 @@ try {
   assert.ok(drawn.length > 1 && drawn[0] && drawn[1], "the largest labels are on the map: " + drawn);
 
   // What is here, and why.
-  await page.locator("#map").click({ position: { x: 846, y: 320 } });
+  const mapped = () => page.evaluate(() => { // somewhere that was seen, away from what lies over the map
+    const { map } = window.shoal;
+    for (let x = 100; x < map.canvas.clientWidth - 100; x += 7) for (let y = 150; y < map.canvas.clientHeight - 100; y += 7)
+      if (map.cellAt(...map.toWorld(x, y))) return { x, y };
+    return null;
+  });
+  await page.locator("#map").click({ position: await mapped() });
   await page.waitForSelector("#inspector .why table");
   assert.match(await text("#inspector"), /Why are these the same\?/i);
   assert.match(page.url(), /label=\d+/);
   await shot("why");
+
+  // What labels look like, in the legend and beside the evidence.
+  await until(async () => (await page.locator("#legend img.example").count()) > 1, "labels have pictures");
+  const loaded = (where) => page.evaluate((w) => [...document.querySelectorAll(w + " img.example")].map((i) => i.complete ? i.naturalWidth : 0), where);
+  await until(async () => (await loaded("#legend")).every((width) => width === 32), "the legend's pictures come");
+  await until(async () => { const widths = await loaded("#inspector .face"); return widths.length > 0 && widths.every((w) => w === 32); }, "the evidence has pictures");
 
   // A name, and back.
   await page.keyboard.press("n");
@@ -49,11 +62,40 @@ try {
   await until(async () => !(await text("#legend")).includes("reef & sand"), "the name is taken back");
 
   // Layers by key, and time.
-  for (const [key, layer] of [["2", "certainty"], ["3", "age"], ["4", "robot"], ["5", "coverage"], ["1", "label"]]) {
+  for (const [key, layer] of [["2", "certainty"], ["3", "age"], ["4", "robot"], ["5", "coverage"], ["6", "truth"], ["1", "label"]]) {
     await page.keyboard.press(key);
     assert.equal(await page.locator("#layers [aria-checked=true]").getAttribute("data-layer"), layer);
+    if (layer === "truth") {
+      await until(async () => (await page.locator("#ramp .class").count()) > 1, "the truth has its classes");
+      const colors = await page.evaluate(() => [...document.querySelectorAll("#ramp .swatch")].map((s) => getComputedStyle(s).backgroundColor));
+      await until(async () => page.evaluate((wanted) => {
+        const canvas = document.getElementById("map"), pixels = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
+        for (let i = 0; i < pixels.length; i += 4) if (wanted.includes(`rgb(${pixels[i]}, ${pixels[i + 1]}, ${pixels[i + 2]})`)) return true;
+        return false;
+      }, colors), "the truth is drawn");
+    }
     if (layer !== "label") await shot(layer);
   }
+
+  // Files for other programs; on Earth only when it is said where.
+  await page.keyboard.press("e");
+  assert.equal(await page.locator("#exports a.off").count(), 1);
+  const saved = async (format) => {
+    const [download] = await Promise.all([page.waitForEvent("download"), page.locator(`#exports [data-format=${format}]`).click()]);
+    return [download.suggestedFilename(), readFileSync(await download.path())];
+  };
+  const [zipName, zip] = await saved("geotiff");
+  assert.equal(zipName, "map.tif.zip");
+  assert.equal(zip.subarray(0, 4).toString("latin1"), "PK\x03\x04");
+  await page.locator("#atlatitude").fill("-17.5");
+  assert.match(await text("#exports .fault"), /longitude/);
+  await page.locator("#atlongitude").fill("177.25");
+  const [kmlName, kml] = await saved("kml");
+  assert.equal(kmlName, "map.kml");
+  assert.match(kml.toString(), /177\.2[0-9]+,-17\.[0-9]+/);
+  await shot("exports");
+  await page.locator("#exports button").click();
+
   await until(async () => !(await page.locator("#time").isDisabled()), "there is a history");
   const all = await cells();
   await until(async () => { await page.keyboard.press("["); return (await cells()) < all; }, "fewer cells were known then");

@@ -6,6 +6,7 @@ Usage: serve_test.py BIN_DIR DOCS_DIR [unittest arguments], inside a network nam
 """
 import gzip
 import http.client
+import io
 import json
 import os
 import random
@@ -19,6 +20,7 @@ import tempfile
 import time
 import unittest
 import urllib.parse
+import zipfile
 
 import jsonschema
 
@@ -160,7 +162,8 @@ class Serve(unittest.TestCase):
         events = self.server.json("/api/events")["events"]
         self.assertEqual(sum(e["kind"] == "landed" for e in events), 3, events)
         traffic = self.server.json("/api/traffic")
-        summary = json.loads(open(os.path.join(self.run_dir, "summary.json"), encoding="utf-8").read())
+        with open(os.path.join(self.run_dir, "summary.json"), encoding="utf-8") as file:
+            summary = json.load(file)
         for node in traffic["nodes"]:
             if node["node"].startswith("R"):
                 for i, name in enumerate(traffic["classes"]):  # what was sent after the last heartbeat is not in it
@@ -176,9 +179,9 @@ class Serve(unittest.TestCase):
         for path, methods in description["paths"].items():
             if "get" not in methods or path == "/api/stream":
                 continue
-            needed = {p["name"]: "csv" if p["name"] == "format" else "1" for p in methods["get"]["parameters"] if p["required"]}
+            needed = {p["name"]: {"format": "csv", "robot": "R00"}.get(p["name"], "1") for p in methods["get"]["parameters"] if p["required"]}
             response, content = self.server.ask(path + "?" + urllib.parse.urlencode(needed))
-            self.assertIn(response.status, (200, 400), path)
+            self.assertIn(response.status, (200, 400, 404, 503), path)
             kind, = methods["get"]["responses"]["200"]["content"].items()
             inline = kind[1]["schema"]
             if response.status == 200 and kind[0] == "application/json" and "schemas/" not in json.dumps(inline).replace("components/schemas/", ""):
@@ -189,11 +192,60 @@ class Serve(unittest.TestCase):
                 self.assertEqual(self.server.ask(path)[0].status, 400, path)
 
     def test_exports_are_those_of_the_command(self):
-        for format_ in self.server.json("/api/mission")["formats"]:
-            out = os.path.join(self.top, "export." + format_)
-            command("export", "--format", format_, "--out", out, "--run", self.run_dir)
-            with open(out, "rb") as file:
-                self.assertEqual(self.server.ask("/api/export?format=" + format_)[1], file.read(), format_)
+        mission = self.server.json("/api/mission")
+        self.assertEqual([e["format"] for e in mission["exports"]], mission["formats"])
+        for export in mission["exports"]:
+            folder = os.path.join(self.top, "export_" + export["format"])
+            os.mkdir(folder)
+            origin = ("--origin", "43.5", "-70.25", "--heading", "12") if export["origin"] != "no" else ()
+            command("export", "--format", export["format"], "--out", os.path.join(folder, export["file"]), "--run", self.run_dir, *origin)
+            expected = {}
+            for name in os.listdir(folder):
+                with open(os.path.join(folder, name), "rb") as file:
+                    expected[name] = file.read()
+            self.assertEqual(set(expected), {export["file"], *export["beside"]})
+            path = "/api/export?format=" + export["format"] + ("&latitude=43.5&longitude=-70.25&heading=12" if origin else "")
+            self.assertEqual(self.server.ask(path)[1], expected[export["file"]], export)
+            with zipfile.ZipFile(io.BytesIO(self.server.ask(path + "&packed=zip")[1])) as archive:
+                self.assertIsNone(archive.testzip())
+                self.assertEqual({name: archive.read(name) for name in archive.namelist()}, expected, export)
+        for wrong in ("format=kml", "format=ply&latitude=1&longitude=2", "format=geotiff&latitude=1", "format=geotiff&heading=3",
+                      "format=geotiff&latitude=99&longitude=0", "format=geotiff&packed=tar", "format=shp"):
+            self.assertEqual(self.server.ask("/api/export?" + wrong)[0].status, 400, wrong)
+
+    def test_pictures_are_those_of_the_run(self):
+        with open(os.path.join(self.run_dir, "pictures", "pictures.json"), encoding="utf-8") as file:
+            index = json.load(file)
+        held = {row["label"]: row["pictures"] for row in self.server.json("/api/pictures")["labels"]}
+        self.assertGreater(len(index["labels"]), 1)
+        for row in index["labels"]:
+            for kept in row["pictures"]:
+                said = [p for p in held[row["label"]] if (p["robot"], p["topic"], p["example"]) == (kept["robot"], kept["topic"], kept["example"])]
+                self.assertEqual([p["seen_s"] for p in said], [kept["seen_s"]])
+                with open(os.path.join(self.run_dir, "pictures", kept["file"]), "rb") as file:
+                    path = f"/api/picture?robot={kept['robot']}&topic={kept['topic']}&example={kept['example']}"
+                    self.assertEqual(self.server.ask(path)[1], file.read(), kept)
+        self.assertEqual(self.server.json("/api/pictures?at=0")["labels"], [])
+        for wrong, status in (("robot=R00&topic=0&example=99", 404), ("robot=&topic=0&example=0", 400), ("robot=R00&topic=x&example=0", 400)):
+            self.assertEqual(self.server.ask("/api/picture?" + wrong)[0].status, status, wrong)
+
+    def test_the_truth_is_what_scores_the_map(self):
+        for _ in range(300):
+            response, content = self.server.ask("/api/classes")
+            if response.status != 503:
+                break
+            time.sleep(0.1)
+        classes = {c["id"] for c in json.loads(content)["classes"]}
+        labels, header = tiles(self.server.ask("/api/map")[1])
+        truth, same = tiles(self.server.ask("/api/truth")[1])
+        self.assertEqual(same["sequence"], header["sequence"])
+        self.assertLessEqual({c for c, _ in truth.values()}, classes)
+        scored = json.loads(command("score", "--world", "reef:tuning", "--run", self.run_dir, "--json"))
+        self.assertEqual((scored["scored"], len({c for c, _ in truth.values()})), (scored["cells"], scored["classes"]))
+        self.assertEqual(set(truth), set(labels))
+        with Server("--log", os.path.join(self.run_dir, "mission.lcmlog")) as other:
+            self.assertFalse(other.settled()["truth"])
+            self.assertEqual(other.ask("/api/classes")[0].status, 404)
 
     def test_strangers_are_turned_away(self):
         ask = self.server.ask

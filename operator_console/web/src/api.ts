@@ -4,10 +4,11 @@
 export interface Mission {
   phase: "live" | "lost" | "reading" | "whole"; problem: string; sequence: number; time_s: number; times_s: number[];
   life: string; version: string; source: "node" | "run" | "log"; place: string; read_only: boolean; formats: string[];
+  pictures: number; truth: boolean; exports: { format: string; file: string; beside: string[]; what: string; origin: "no" | "may" | "must" }[];
 }
 export interface Label {
   label: number; name: string; cells: number; area_m2: number; first_seen_s: number; last_seen_s: number;
-  certainty: number; robots: string[]; color: string; picture?: string;
+  certainty: number; robots: string[]; color: string;
 }
 export interface Node {
   name: string; phase: string; heard_s: number; observation: number; num_observations: number; topics: number;
@@ -23,7 +24,10 @@ export interface Why {
   label: number; name: string; matcher: string; similarity: string; sigma: number | null; margin: number | null;
   members: { robot: string; topic: number; cells: number; mean_similarity: number | null; nearest: Topic[]; outsider: Topic | null }[];
   nearest_label: { label: number; mean_similarity: number } | null;
+  shared_words: { first: number; size: number; words: { word: number; share: number; members: number }[] }[];
 }
+export interface Picture { robot: string; topic: number; example: number; seen_s: number; layers: number; num_layers: number }
+export interface TruthClass { id: number; name: string; color: string }
 export interface CellHistory {
   cells: { x_m: number; y_m: number; z_m: number; label: number; name: string; robot: string; seen_s: number;
            history: { robot: string; seen_s: number; topic: number; label: number; certainty: number }[] }[];

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import { ask, askBytes, decide, hasToken, takeToken } from "./api";
-import type { CellHistory, Happening, Label, Mission, Node, Status, Track, Traffic, Why } from "./api";
+import type { CellHistory, Happening, Label, Mission, Node, Picture, Status, Track, Traffic, TruthClass, Why } from "./api";
 import { classColor, rampCss, robotColor } from "./colors";
 import { area, byId, el, seconds } from "./dom";
+import { openExports } from "./exports";
 import { drawLink, rateText } from "./link_plot";
 import { isSilent, LAYERS, MapView, type Layer } from "./map_view";
+import { Pictures } from "./pictures";
 import { decodeTiles } from "./tiles";
 
 takeToken();
@@ -13,8 +15,12 @@ let mission: Mission | null = null, status: Status | null = null;
 let labels: Label[] = [], traffic: Traffic | null = null, events: Happening[] = [];
 let past: number | null = null; // mission time that is looked at; null: the newest
 let linking: number | null = null; // the label that waits for another to be linked with
-let fitted = false, playing = 0;
-const LAYER_TEXT: Record<Layer, string> = { label: "Label", certainty: "Certainty", age: "Age", robot: "Robot", coverage: "Coverage" };
+let fitted = false, playing = 0,
+    followed = false, // all of the map is kept in sight, until somebody moves it
+    showRare = false;
+let classes: TruthClass[] = [], truthOf = ""; // what the truth was fetched for
+const pictures = new Pictures();
+const LAYER_TEXT: Record<Layer, string> = { label: "Label", certainty: "Certainty", age: "Age", robot: "Robot", coverage: "Coverage", truth: "Truth" };
 
 const nameOf = (label: number): string => labels.find((l) => l.label === label)?.name || String(label);
 const colorOf = (label: number): string => labels.find((l) => l.label === label)?.color ?? "#999";
@@ -41,8 +47,12 @@ async function refresh(): Promise<void> {
       map.setLabels(labels);
       map.take(decodeTiles(bytes));
       (window as unknown as Record<string, unknown>).shoal = { map, bytes: bytes.byteLength, fetchMs: performance.now() - begun };
+      const pictured = past !== null ? at : `${mission.life} ${mission.pictures}`;
+      if (pictures.of !== pictured) pictures.take(pictured, (await ask<{ labels: { label: number; pictures: Picture[] }[] }>("/api/pictures" + at)).labels, at.replace("?", "&"));
+      if (map.layer === "truth") void fetchTruth();
       if (past !== null) map.sequence = 0, map.life = ""; // the next newest map comes whole
-      if (!fitted && !map.isEmpty) { fitted = true; if (!restoreView()) map.fit(); }
+      if (!fitted && !map.isEmpty) { fitted = true; followed = !restoreView(); }
+      if (followed && !map.isEmpty) map.fit();
     }
     show();
   } catch (problem) {
@@ -51,6 +61,24 @@ async function refresh(): Promise<void> {
   } finally {
     fetching = false;
     if (again) { again = false; void refresh(); }
+  }
+}
+
+// The truth is worked out when it is first asked for, which may take a while.
+async function fetchTruth(): Promise<void> {
+  if (!mission?.truth) return;
+  const at = past === null ? "" : `?at=${past}`, wanted = `${mission.life} ${at} ${past === null ? mission.sequence : ""}`;
+  if (truthOf === wanted) return;
+  truthOf = wanted;
+  try {
+    classes = (await ask<{ classes: TruthClass[] }>("/api/classes")).classes;
+    map.setTruth(decodeTiles(await askBytes("/api/truth" + at)), classes);
+    showRamp();
+  } catch (problem) {
+    truthOf = "";
+    const waits = (problem as Error).message.includes("being found out");
+    if (!waits) toast((problem as Error).message);
+    if (waits) setTimeout(() => { if (map.layer === "truth") void fetchTruth(); }, 1000);
   }
 }
 
@@ -81,25 +109,29 @@ function show(): void {
   byId("counts").textContent = status ? `${status.cells.toLocaleString("en")} cells · ${labels.length} labels · ${area(labels.reduce((s, l) => s + l.area_m2, 0))}` : "";
   byId("empty").hidden = !map.isEmpty;
   byId("undo").hidden = !mayWrite();
-  const choice = byId<HTMLSelectElement>("export");
-  if (choice.options.length === 1) for (const format of mission.formats) choice.add(new Option(format, format));
+  document.querySelector<HTMLElement>("#layers [data-layer=truth]")!.hidden = !mission.truth;
   showLegend(); showRobots(); showLink(); showEvents(); showTime(); showRamp();
 }
 
 function showLegend(): void {
   if (document.activeElement?.closest("#legend input")) return; // somebody is typing a name
   const total = labels.reduce((s, l) => s + l.area_m2, 0) || 1;
-  byId("legend").replaceChildren(...labels.map((l) => el("div", {
+  const isRare = (l: Label): boolean => l.area_m2 < total / 500 && l.name === "" && map.selected !== l.label;
+  const rare = labels.filter(isRare);
+  const row = (l: Label): HTMLElement => el("div", {
     class: "row label" + (map.selected === l.label ? " chosen" : ""), tabindex: "0", title: `label ${l.label}, ${l.cells} cells`,
     click: () => choose(l.label), dblclick: () => nameLabel(l.label),
     keydown: (e) => { if ((e as KeyboardEvent).key === "Enter" && e.target === e.currentTarget) choose(l.label); },
   },
-    l.picture ? el("img", { src: l.picture, alt: "", class: "example" }) : null,
     el("span", { class: "swatch", style: `background:${l.color}` }),
-    el("span", { class: "name", "data-label": String(l.label) }, l.name || `label ${l.label}`),
+    el("span", { class: "examples" }, ...pictures.ofLabel(l.label).slice(0, 2).map((p) => pictures.image("legend", p))),
+    el("span", { class: "what" }, el("span", { class: "name", "data-label": String(l.label) }, l.name || `label ${l.label}`),
+      el("small", { class: "dim" }, `${area(l.area_m2)} · ${l.robots.length === 1 ? "only " + l.robots[0] : `${l.robots.length} robots`}`)),
     el("span", { class: "bar" }, el("i", { style: `width:${(100 * l.area_m2) / total}%;background:${l.color}` })),
-    el("span", { class: "number" }, area(l.area_m2)),
-    el("span", { class: "number dim" }, l.robots.length === 1 ? l.robots[0] : `${l.robots.length} robots`))));
+    el("span", { class: "number dim" }, `${((100 * l.area_m2) / total).toFixed(l.area_m2 * 100 < total ? 1 : 0)} %`));
+  byId("legend").replaceChildren(...labels.filter((l) => showRare || !isRare(l)).map(row));
+  if (rare.length > 0) byId("legend").append(el("button", { class: "small rare", click: () => { showRare = !showRare; showLegend(); } },
+    showRare ? "hide the rare ones" : `+ ${rare.length} rare ${rare.length === 1 ? "label" : "labels"}, ${area(rare.reduce((s, l) => s + l.area_m2, 0))} together`));
 }
 
 function showRobots(): void {
@@ -148,8 +180,12 @@ function showTime(): void {
 
 function showRamp(): void {
   const box = byId("ramp");
-  box.hidden = map.layer !== "certainty" && map.layer !== "age";
+  box.hidden = map.layer !== "certainty" && map.layer !== "age" && map.layer !== "truth";
   if (box.hidden) return;
+  if (map.layer === "truth") {
+    box.replaceChildren(...(classes.length ? classes.map((c) => el("span", { class: "class" }, el("b", { class: "swatch", style: `background:${c.color}` }), c.name)) : ["the truth is being worked out…"]));
+    return;
+  }
   const [low, high] = map.layer === "certainty" ? ["unsure", "sure"] : [`${seconds(map.ageRange()[1])} ago`, "just seen"];
   box.replaceChildren(el("span", {}, low), el("i", { style: `background:${rampCss}` }), el("span", {}, high));
 }
@@ -158,6 +194,7 @@ function setLayer(layer: Layer): void {
   map.layer = layer;
   for (const button of byId("layers").children) button.setAttribute("aria-checked", String((button as HTMLElement).dataset.layer === layer));
   map.repaint(); showRamp(); remember();
+  if (layer === "truth") void fetchTruth();
 }
 
 // ---------- asking and deciding
@@ -187,13 +224,14 @@ function choose(label: number | null): void {
     return;
   }
   map.selected = label;
-  if (label === null) byId("inspector").hidden = true; else void inspect(label);
+  if (label === null) { byId("inspector").hidden = true; map.covered = 0; } else void inspect(label);
   map.repaint(); show(); remember();
 }
 
 async function inspect(label: number, cell?: HTMLElement): Promise<void> {
   const box = byId("inspector"), l = labels.find((x) => x.label === label);
   box.hidden = false;
+  map.covered = map.canvas.clientWidth > 760 ? box.offsetWidth + 24 : 0;
   const buttons = el("div", { class: "buttons" });
   if (mayWrite() && past === null) buttons.append(
     el("button", { click: () => nameLabel(label) }, l?.name ? "Rename" : "Name"),
@@ -202,7 +240,8 @@ async function inspect(label: number, cell?: HTMLElement): Promise<void> {
   const why = el("div", { class: "why dim" }, "asking why…");
   box.replaceChildren(el("div", { class: "head" }, el("span", { class: "swatch big", style: `background:${colorOf(label)}` }), el("b", {}, l?.name || `label ${label}`),
     el("span", { class: "dim" }, l?.name ? `label ${label}` : ""), el("span", { class: "grow" }), el("button", { class: "small", "aria-label": "Close", click: () => choose(null) }, "×")),
-    l ? el("div", { class: "dim" }, `${area(l.area_m2)}, first seen ${seconds(l.first_seen_s)}, last ${seconds(l.last_seen_s)}, ${(100 * l.certainty).toFixed(0)} % sure in the mean`) : "", cell ?? "", buttons, why);
+    l ? el("div", { class: "dim" }, `${area(l.area_m2)}, first seen ${seconds(l.first_seen_s)}, last ${seconds(l.last_seen_s)}, ${(100 * l.certainty).toFixed(0)} % sure in the mean`) : "",
+    el("div", { class: "strip" }, ...pictures.ofLabel(label).slice(0, 8).map((p) => pictures.image("inspector", p))), cell ?? "", buttons, why);
   try {
     const w = await ask<Why>(`/api/why?label=${label}`);
     if (map.selected === label) why.replaceWith(whyTable(w));
@@ -211,14 +250,24 @@ async function inspect(label: number, cell?: HTMLElement): Promise<void> {
 
 function whyTable(w: Why): HTMLElement {
   const percent = (s: number | null): string => (s === null ? "–" : s.toFixed(2));
-  const bar = (s: number | null, color: string): HTMLElement => el("td", { class: "sim" }, el("i", { style: `width:${60 * Math.max(0, s ?? 0)}px;background:${color}` }), percent(s));
-  const sentence = w.members.length === 1 ? `Only ${w.members[0].robot} knows it: nobody else told of anything alike${w.sigma === null ? "" : ` (it takes ${w.sigma.toFixed(2)})`}.`
-    : `${w.members.length} topics of ${new Set(w.members.map((m) => m.robot)).size} robots were found to be the same thing${w.sigma === null ? "" : `: alike by ${w.sigma.toFixed(2)} or more in the mean`}.`;
+  const bar = (s: number | null, color: string): HTMLElement => el("span", { class: "sim" }, el("i", { style: `width:${44 * Math.max(0, s ?? 0)}px;background:${color}` }), percent(s));
+  const robots = new Set(w.members.map((m) => m.robot)).size, takes = w.sigma === null ? "" : ` It takes ${w.sigma.toFixed(2)}.`;
+  const sentence = w.members.length === 1 ? `Only ${w.members[0].robot} knows it: nobody else told of anything enough like it.${takes}`
+    : `${robots === 1 ? "One robot" : `${robots} robots`} told of ${w.members.length} things that are alike in what they are made of.${takes}`;
+  const kinds = w.shared_words.filter((g) => g.words.some((word) => word.members === w.members.length)).length;
+  const face = (slot: string, robot: string, topic: number): HTMLElement => { const p = pictures.ofTopic(robot, topic)[0]; return p ? pictures.image(slot, p) : el("span", { class: "nopicture", title: "no picture has come yet" }); };
+  const other = w.nearest_label, otherPictures = other ? pictures.ofLabel(other.label).slice(0, 4).map((p) => pictures.image("other", p)) : [];
   return el("div", { class: "why" }, el("h3", {}, "Why are these the same?"), el("p", {}, sentence),
-    el("table", {}, el("tr", {}, el("th", {}, "topic"), el("th", {}, "cells"), el("th", { title: "mean similarity to the others of this label" }, "like these"), el("th", { title: "the topic outside most like it" }, "like others")),
-      ...w.members.map((m) => el("tr", {}, el("td", {}, el("span", { class: "dot", style: `background:${robotColor(Number(m.robot.slice(1)))}` }), `${m.robot} · ${m.topic}`), el("td", {}, String(m.cells)), bar(m.mean_similarity, "#0072b2"),
-        m.outsider ? bar(m.outsider.similarity, "#e69f00") : el("td", {}, "–")))),
-    el("p", { class: "dim" }, w.nearest_label ? `The other label most like it is ${nameOf(w.nearest_label.label)} (${w.nearest_label.mean_similarity.toFixed(2)}${w.margin === null ? "" : `, ${Math.abs(w.margin).toFixed(2)} ${w.margin >= 0 ? "short of" : "beyond"} joining`}). ` : "", `Matched by ${w.matcher}, ${w.similarity}.`));
+    el("table", {}, el("tr", {}, el("th", { colspan: "2" }, "seen by"), el("th", { title: "mean similarity to the others of this label, 0 to 1" }, "like these"), el("th", { colspan: "2", title: "the thing outside this label that is most like it" }, "most like it outside")),
+      ...w.members.map((m) => el("tr", {}, el("td", { class: "face" }, face("member", m.robot, m.topic)),
+        el("td", {}, el("span", { class: "dot", style: `background:${robotColor(Number(m.robot.slice(1)))}` }), m.robot, el("small", { class: "dim" }, ` topic ${m.topic}, ${m.cells} cells`)),
+        el("td", {}, bar(m.mean_similarity, "#0072b2")),
+        el("td", { class: "face" }, m.outsider ? face(`outsider of ${m.robot}/${m.topic}`, m.outsider.robot, m.outsider.topic) : ""),
+        el("td", {}, m.outsider ? bar(m.outsider.similarity, "#e69f00") : "–")))),
+    kinds > 0 && w.members.length > 1 ? el("p", {}, `In ${kinds} of ${w.shared_words.length} kinds of visual words all of them hold the same ones.`) : null,
+    other ? el("p", { class: "other" }, "Not the same, but nearest: ", el("a", { href: "#", click: (e) => { e.preventDefault(); choose(other.label); } }, el("span", { class: "swatch", style: `background:${colorOf(other.label)}` }), nameOf(other.label)),
+      ` (${other.mean_similarity.toFixed(2)}${w.margin === null ? "" : `, ${Math.abs(w.margin).toFixed(2)} ${w.margin >= 0 ? "short of" : "beyond"} joining`})`, el("span", { class: "strip" }, ...otherPictures)) : null,
+    el("p", { class: "dim" }, `Matched by ${w.matcher}, ${w.similarity}.${w.matcher === "shoal" ? " Groups are joined by the mean of all pairs, so single things outside may be more alike than the ones inside." : ""}`));
 }
 
 async function inspectCell(x: number, y: number): Promise<void> {
@@ -297,8 +346,8 @@ function restoreView(): boolean {
 
 // ---------- hands
 
-const KEYS: [string, string][] = [["click", "what is here, and why"], ["drag, wheel", "move, zoom"], ["arrows + − 0", "move, zoom, see everything"], ["1 … 5", "label, certainty, age, robot, coverage"],
-  ["[ ] space", "earlier, later, play"], ["n", "name the chosen label"], ["u", "undo"], ["Esc", "choose nothing"]];
+const KEYS: [string, string][] = [["click", "what is here, and why"], ["drag, wheel", "move, zoom"], ["arrows + − 0", "move, zoom, see everything"], ["1 … 6", "label, certainty, age, robot, coverage, truth (when it is known)"],
+  ["[ ] space", "earlier, later, play"], ["n", "name the chosen label"], ["u", "undo"], ["e", "export"], ["Esc", "choose nothing"]];
 
 function hands(): void {
   const canvas = map.canvas;
@@ -306,20 +355,20 @@ function hands(): void {
   canvas.addEventListener("pointerdown", (e) => { from = [e.clientX, e.clientY]; moved = false; canvas.setPointerCapture(e.pointerId); });
   canvas.addEventListener("pointermove", (e) => {
     if (from) {
-      if (Math.abs(e.clientX - from[0]) + Math.abs(e.clientY - from[1]) > 3 || moved) { moved = true; map.pan(e.clientX - from[0], e.clientY - from[1]); from = [e.clientX, e.clientY]; }
+      if (Math.abs(e.clientX - from[0]) + Math.abs(e.clientY - from[1]) > 3 || moved) { moved = true; followed = false; map.pan(e.clientX - from[0], e.clientY - from[1]); from = [e.clientX, e.clientY]; }
     }
     const [x, y] = map.toWorld(e.offsetX, e.offsetY), cell = map.cellAt(x, y);
-    byId("readout").textContent = `${x.toFixed(1)}, ${y.toFixed(1)} m` + (cell ? ` · ${nameOf(cell.label)} · R${String(cell.robot).padStart(2, "0")} at ${seconds(cell.seen)} · ${(100 * cell.certainty).toFixed(0)} % sure` : "");
+    byId("readout").textContent = `${x.toFixed(1)}, ${y.toFixed(1)} m` + (cell ? ` · ${nameOf(cell.label)} · R${String(cell.robot).padStart(2, "0")} at ${seconds(cell.seen)} · ${(100 * cell.certainty).toFixed(0)} % sure` + (map.layer === "truth" && cell.truth !== null ? ` · truly ${classes.find((c) => c.id === cell.truth)?.name ?? cell.truth}` : "") : "");
   });
   canvas.addEventListener("pointerup", (e) => { if (from && !moved) void inspectCell(...map.toWorld(e.offsetX, e.offsetY)); else remember(); from = null; });
-  canvas.addEventListener("wheel", (e) => { e.preventDefault(); map.zoom(Math.exp(-e.deltaY * 0.0015), e.offsetX, e.offsetY); remember(); }, { passive: false });
+  canvas.addEventListener("wheel", (e) => { e.preventDefault(); followed = false; map.zoom(Math.exp(-e.deltaY * 0.0015), e.offsetX, e.offsetY); remember(); }, { passive: false });
   for (const layer of LAYERS) byId("layers").append(el("button", { role: "radio", "data-layer": layer, "aria-checked": String(layer === map.layer), click: () => setLayer(layer) }, LAYER_TEXT[layer]));
-  byId("fit").addEventListener("click", () => { map.fit(); remember(); });
+  byId("fit").addEventListener("click", () => { followed = true; map.fit(); remember(); });
   byId<HTMLInputElement>("tracks").addEventListener("change", (e) => { map.showTracks = (e.target as HTMLInputElement).checked; map.draw(); });
   byId<HTMLInputElement>("names").addEventListener("change", (e) => { map.showRobots = (e.target as HTMLInputElement).checked; map.draw(); });
   byId("undo").addEventListener("click", () => void takeBack());
   byId("copy").addEventListener("click", () => { remember(); void navigator.clipboard?.writeText(location.href).then(() => toast("The link is copied. It carries no key."), () => toast(location.href)); });
-  byId<HTMLSelectElement>("export").addEventListener("change", (e) => { const choice = e.target as HTMLSelectElement; if (choice.value) location.href = `/api/export?format=${choice.value}`; choice.value = ""; });
+  byId("export").addEventListener("click", () => { if (mission) openExports(mission); });
   byId<HTMLInputElement>("time").addEventListener("input", (e) => travel(Number((e.target as HTMLInputElement).value)));
   byId("now").addEventListener("click", () => travel(null));
   byId("play").addEventListener("click", play);
@@ -332,15 +381,17 @@ function hands(): void {
     const act: Record<string, () => void> = {
       ArrowLeft: () => map.pan(60, 0), ArrowRight: () => map.pan(-60, 0), ArrowUp: () => map.pan(0, 60), ArrowDown: () => map.pan(0, -60),
       "+": () => map.zoom(1.3), "=": () => map.zoom(1.3), "-": () => map.zoom(1 / 1.3), "0": () => map.fit(), "[": () => step(-1), "]": () => step(1), " ": play,
-      n: () => { if (map.selected !== null) nameLabel(map.selected); }, u: () => { if (mayWrite()) void takeBack(); }, "?": () => keys.showModal(),
+      n: () => { if (map.selected !== null) nameLabel(map.selected); }, u: () => { if (mayWrite()) void takeBack(); }, "?": () => keys.showModal(), e: () => { if (mission) openExports(mission); },
       Escape: () => { linking = null; byId("map").classList.remove("linking"); map.onlyRobot = null; choose(null); },
     };
-    LAYERS.forEach((layer, i) => (act[String(i + 1)] = () => setLayer(layer)));
+    LAYERS.forEach((layer, i) => (act[String(i + 1)] = () => { if (layer !== "truth" || mission?.truth) setLayer(layer); }));
     if (e.target instanceof HTMLInputElement && e.target.type === "range" && e.key.startsWith("Arrow")) return;
     if (e.target instanceof HTMLButtonElement && e.key === " ") return;
     const action = act[e.key];
     if (!action) return;
     e.preventDefault(); action();
+    if (e.key.startsWith("Arrow") || "+=-".includes(e.key)) followed = false;
+    if (e.key === "0") followed = true;
     if (e.key.startsWith("Arrow") || "+=-0".includes(e.key)) remember();
   });
 }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The map on a canvas: squares of 256 x 256 columns kept as pictures, redrawn only where cells changed.
 import { faded, parse, ramp, rgba, robotColor } from "./colors";
-import type { Label, Node, Track } from "./api";
+import type { Label, Node, Track, TruthClass } from "./api";
 import { SIDE, type Tile, type TileSet } from "./tiles";
 
-export type Layer = "label" | "certainty" | "age" | "robot" | "coverage";
-export const LAYERS: Layer[] = ["label", "certainty", "age", "robot", "coverage"];
-export interface Cell { x: number; y: number; label: number; seen: number; robot: number; certainty: number }
+export type Layer = "label" | "certainty" | "age" | "robot" | "coverage" | "truth";
+export const LAYERS: Layer[] = ["label", "certainty", "age", "robot", "coverage", "truth"];
+export interface Cell { x: number; y: number; label: number; seen: number; robot: number; certainty: number; truth: number | null }
 
 const CHUNK = 8; // tiles along the edge of a picture
 const SILENT_S = 5;
@@ -20,7 +20,10 @@ export class MapView {
   center = { x: 0, y: 0 }; scale = 4; // metres; pixels a metre
   tracks: Track[] = []; nodes: Node[] = [];
   lastFrameMs = 0;
+  covered = 0; // pixels at the right that something lies over
   private tiles = new Map<string, Tile>();
+  private truth = new Map<string, Tile>(); // with classes as labels
+  private truthColors = new Map<number, number>();
   private chunks = new Map<string, Chunk>();
   private dirty = new Set<string>();
   private colors = new Map<number, number>();
@@ -55,6 +58,12 @@ export class MapView {
     if ([...this.colors].some(([label, color]) => before.get(label) !== color)) this.repaint();
   }
 
+  setTruth(set: TileSet, classes: TruthClass[]): void {
+    this.truth = new Map(set.tiles.map((t) => [t.x + "," + t.y, t]));
+    this.truthColors = new Map(classes.map((c) => [c.id, parse(c.color)]));
+    if (this.layer === "truth") this.repaint();
+  }
+
   repaint(): void {
     for (const key of this.tiles.keys()) this.dirty.add(key);
     this.draw();
@@ -78,6 +87,7 @@ export class MapView {
           return color;
         }
         case "coverage": return rgba(68, 140, 150);
+        case "truth": return this.truthColors.get(this.truth.get(tile.x + "," + tile.y)?.label[i] ?? -1) ?? rgba(205, 209, 213);
       }
     };
     return (tile, i) => (tile.label[i] < 0 ? 0 : chosen(tile, i) ? plain(tile, i) : faded(plain(tile, i)));
@@ -209,7 +219,8 @@ export class MapView {
     const tile = this.tiles.get(tx + "," + ty);
     const i = (cy - ty * SIDE) * SIDE + (cx - tx * SIDE);
     if (!tile || tile.label[i] < 0) return null;
-    return { x: cx * this.cellSize, y: cy * this.cellSize, label: tile.label[i], seen: this.base + tile.seen[i] / 10,
+    const truth = this.truth.get(tx + "," + ty)?.label[i] ?? -1;
+    return { x: cx * this.cellSize, y: cy * this.cellSize, truth: truth < 0 ? null : truth, label: tile.label[i], seen: this.base + tile.seen[i] / 10,
              robot: tile.robot[i], certainty: tile.certainty[i] / 255 };
   }
 
@@ -222,7 +233,11 @@ export class MapView {
     }
     if (x0 > x1) return;
     this.center = { x: ((x0 + x1) / 2) * this.cellSize, y: ((y0 + y1) / 2) * this.cellSize };
-    this.scale = 0.92 * Math.min(this.canvas.clientWidth / ((x1 - x0 + 1) * this.cellSize), this.canvas.clientHeight / ((y1 - y0 + 1) * this.cellSize));
+    // The bar above the map hides nothing.
+    const bar = 52, height = Math.max(50, this.canvas.clientHeight - bar), width = Math.max(50, this.canvas.clientWidth - this.covered);
+    this.scale = 0.95 * Math.min(width / ((x1 - x0 + 1) * this.cellSize), height / ((y1 - y0 + 1) * this.cellSize));
+    this.center.x += this.covered / 2 / this.scale;
+    this.center.y += bar / 2 / this.scale;
     this.draw();
   }
 

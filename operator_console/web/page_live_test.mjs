@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The page beside a mission that is flown meanwhile. Usage: node page_live_test.mjs BIN_DIR [FOLDER FOR SCREENSHOTS], in a network
+// namespace of its own. Exit code 1 and what was expected when something fails.
+import assert from "node:assert/strict";
+import { spawn } from "node:child_process";
+import { mkdtempSync, openSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { createInterface } from "node:readline";
+import { chromium } from "playwright-core";
+
+const [bin, folder] = process.argv.slice(2);
+const top = mkdtempSync(join(tmpdir(), "shoal_live_page_")), state = join(top, "state");
+const log = openSync(join(top, "log"), "w"), started = [];
+const start = (program, ...options) => {
+  const child = spawn(join(bin, program), options, { stdio: ["ignore", "pipe", log] });
+  started.push(child);
+  child.gone = new Promise((resolve) => child.on("exit", resolve));
+  return child;
+};
+const mission = ["--lcm-url", "udpm://239.255.76.69:7683?ttl=0", "--mission", "livepage"];
+const fuse = () => { const node = start("fusion_node", "--node", "OPERATOR", "--state", state, ...mission); node.stdout.resume(); return node; };
+const serve = async (port) => {
+  const child = start("operator_console", "serve", "--node", state, "--port", String(port), "--json");
+  for await (const line of createInterface({ input: child.stdout })) return { child, ...JSON.parse(line) };
+  throw new Error("serve said nothing");
+};
+const command = async (...options) => {
+  const child = start("operator_console", "--log-level", "error", ...options);
+  let said = "";
+  for await (const chunk of child.stdout) said += chunk;
+  assert.equal(await child.gone, 0, options.join(" "));
+  return JSON.parse(said);
+};
+
+let browser;
+try {
+  let node = fuse();
+  const { child: server, url, port } = await serve(0);
+  browser = await chromium.launch({ executablePath: "/usr/bin/chromium", args: ["--no-sandbox", "--disable-gpu"] });
+  const problems = [];
+  const open = async (address) => {
+    const page = await (await browser.newContext({ viewport: { width: 1400, height: 860 } })).newPage();
+    page.on("pageerror", (error) => problems.push(String(error)));
+    await page.goto(address);
+    return page;
+  };
+  const until = async (what, why) => {
+    for (let i = 0; i < 300; ++i) { if (await what()) return; await new Promise((r) => setTimeout(r, 100)); }
+    assert.fail(why);
+  };
+  const page = await open(url), other = await open(url.split("#")[0]);
+  const text = (selector, on = page) => on.locator(selector).innerText();
+  const cells = async (on = page) => Number((await text("#counts", on)).split(" ")[0].replace(/,/g, "")) || 0;
+  const shot = (name) => (folder ? page.screenshot({ path: join(folder, `live_${name}.png`) }) : undefined);
+
+  // The map grows under the eyes of both, with nobody touching anything.
+  for (let n = 0; n < 3; ++n)
+    start("robot_agent", "--robot", `R0${n}`, "--robots", "3", "--source", "reef:tuning", "--observations", "24", "--budget", "0", "--rate", "4",
+      "--out", join(top, "out"), ...mission).stdout.resume();
+  const robots = started.slice(-3);
+  await until(async () => (await text("#phase")) === "live" && (await cells()) > 0, "the first cells come");
+  const some = await cells();
+  await until(async () => (await text("#robots")).includes("flying"), "robots fly");
+  await until(async () => (await cells()) > some && (await cells(other)) > some, "the map grows on both pages");
+  await shot("flying");
+  for (const robot of robots) assert.equal(await robot.gone, 0, "a robot came home");
+  await until(async () => ((await text("#robots")).match(/landed/g) ?? []).length === 3, "all have landed");
+  const whole = (await command("status", "--node", state, "--json")).cells;
+  await until(async () => (await cells()) === whole && (await cells(other)) === whole, "both pages have the whole map");
+  await until(async () => (await page.locator("#legend img.example").count()) > 1, "pictures have come");
+
+  // A name given here is on the other page, and with the node.
+  await page.locator("#legend .label .name").first().dblclick();
+  await page.locator("#legend input").fill("sand & <b>rubble</b>");
+  await page.keyboard.press("Enter");
+  await until(async () => (await text("#legend", other)).includes("sand & <b>rubble</b>"), "the other page hears of the name");
+  assert.ok((await command("labels", "--node", state, "--json")).labels.some((l) => l.name === "sand & <b>rubble</b>"));
+  assert.ok(await other.locator("#undo").isHidden(), "who has no key changes nothing");
+
+  // The node goes, and comes back with what it knew.
+  node.kill("SIGINT");
+  await node.gone;
+  await until(async () => (await text("#phase")) === "node not answering", "the page says that the node is gone");
+  assert.equal(await cells(), whole, "what was known is still shown");
+  await shot("lost");
+  node = fuse();
+  await until(async () => (await text("#phase")) === "live" && (await cells()) === whole, "the node is back");
+  assert.match(await text("#legend"), /sand & <b>rubble<\/b>/);
+
+  // The server goes, and another comes in its place: pages find it by themselves.
+  server.kill("SIGINT");
+  await server.gone;
+  await until(async () => /gone|no answer/.test(await text("#phase")), "the page says that the server is gone");
+  await serve(port);
+  await until(async () => (await text("#phase")) === "live" && (await text("#phase", other)) === "live", "both pages have found the new server");
+  assert.equal(await cells(other), whole);
+  await shot("again");
+  assert.deepEqual(problems, []);
+  console.log("the live page works");
+} catch (error) {
+  console.error(error);
+  process.exitCode = 1;
+} finally {
+  await browser?.close();
+  for (const child of started) if (child.exitCode === null && child.signalCode === null) child.kill("SIGKILL");
+  await Promise.all(started.map((child) => child.gone));
+  rmSync(top, { recursive: true });
+}
