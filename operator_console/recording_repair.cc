@@ -5,6 +5,7 @@
 
 #include "fusion_node/mission_state.h"
 #include "fusion_node/repair.h"
+#include "shoal/mapping/library.h"
 #include "shoal/comms/channels.h"
 #include "shoal/comms/log_reader.h"
 #include "shoal/comms/repair_talk.h"
@@ -24,8 +25,8 @@ std::set<int32_t> differingShares(const mapping::BeliefStore& beliefs,
     if (const auto robot = world::parseRobotId(node)) {
       if (heartbeat.own_digest != beliefs.digestOf(*robot)) shares.insert(number(*robot));
     }
-    for (const auto& share : heartbeat.roster) {  // what operators decided
-      if (share.robot == mapping::kOperators &&
+    for (const auto& share : heartbeat.roster) {  // what operators decided, and knew before
+      if ((share.robot == mapping::kOperators || share.robot == mapping::kLibrary) &&
           share.digest != wire::shareDigest(beliefs.digestOf(share.robot)))
         shares.insert(number(share.robot));
     }
