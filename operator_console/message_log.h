@@ -25,8 +25,8 @@ struct SealCounts {
   std::string text() const;  ///< a line, or nothing when there is nothing to say
 };
 
-/// Reads the messages of a recording, or of what a node remembers (MissionFile), without their seals. With a key, messages on our channels
-/// that it did not seal are left out, and those that somebody said again.
+/// Reads the messages of a recording, or of what a node remembers (MissionFile), without their seals. With a
+/// key, messages on our channels that it did not seal are left out, and those that somebody said again.
 class MessageLog {
  public:
   /// @param key_file  empty: seals are removed unseen.

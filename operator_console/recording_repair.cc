@@ -5,10 +5,10 @@
 
 #include "fusion_node/mission_state.h"
 #include "fusion_node/repair.h"
-#include "shoal/mapping/library.h"
 #include "shoal/comms/channels.h"
 #include "shoal/comms/log_reader.h"
 #include "shoal/comms/repair_talk.h"
+#include "shoal/mapping/library.h"
 #include "shoal/wire/repair_codec.h"
 #include "shoal/world/ids.h"
 
