@@ -32,7 +32,7 @@ std::string editsPathOf(const Where& where);
 /// How the map of a run was matched, as its summary.json says; else what `where` says.
 matching::MatcherOptions matcherOf(const Where& where);
 
-/// The recording to look into for the past: --log, or the mission.lcmlog of --run.
+/// What to look into for the past: --log, the mission.lcmlog of --run, or the newest file of --node.
 /// @throws std::runtime_error when there is none: a run that was not recorded, a node that has heard nothing.
 std::string recordingOf(const Where& where);
 
