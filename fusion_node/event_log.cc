@@ -32,6 +32,16 @@ void EventLog::add(double at_s, std::string kind, std::string node, std::string 
   events_.push_back({at_s, std::move(kind), std::move(node), std::move(says)});
 }
 
+void EventLog::restore(const std::vector<mapping::MissionEvent>& events) {
+  const size_t most = std::min(events.size(), kMaxEvents);
+  events_.assign(events.end() - static_cast<std::ptrdiff_t>(most), events.end());
+  refusals_.clear();
+  for (auto& [name, node] : nodes_) {
+    node.wall_s = wall_s_;
+    node.last.pid = 0;  // whoever speaks next under the name is it: we were not there
+  }
+}
+
 void EventLog::passTime(double wall_s) {
   wall_s_ = std::max(wall_s_, wall_s);
   for (auto& [name, node] : nodes_) {
@@ -63,7 +73,7 @@ void EventLog::heard(const std::string& name, const wire::Heartbeat& h) {
   if (h.epoch > node.last.epoch) {
     add(at_s, "again", name, fmt::format("began anew, epoch {}: what it said before is void", h.epoch));
     node.twin = false;
-  } else if ((h.pid != node.last.pid || h.host != node.last.host) && !node.twin) {
+  } else if (node.last.pid != 0 && (h.pid != node.last.pid || h.host != node.last.host) && !node.twin) {
     add(at_s, "twin", name, fmt::format("process {} speaks as {}, as {} did", h.pid, name, node.last.pid));
     node.twin = true;
   }

@@ -28,6 +28,10 @@ class EventLog {
 
   void otherMission(int32_t mission);
 
+  /// In place of what is told so far: what was told in an earlier life. Nodes that were heard in it count as
+  /// heard now.
+  void restore(const std::vector<mapping::MissionEvent>& events);
+
   std::vector<mapping::MissionEvent> events() const { return {events_.begin(), events_.end()}; }
 
  private:

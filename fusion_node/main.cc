@@ -15,6 +15,7 @@
 #include "shoal/comms/lcm_bus.h"
 #include "shoal/comms/lcm_url.h"
 #include "shoal/comms/rate_limited_bus.h"
+#include "shoal/mapping/atomic_file.h"
 #include "shoal/version.h"
 
 namespace {
@@ -60,7 +61,7 @@ int run(fusion_node::NodeOptions options, const Link& on) {
 int main(int argc, char** argv) {
   fusion_node::NodeOptions options;
   Link link;
-  std::string rate = "1", mission = "shoal", log_level = "info", sigma = "auto";
+  std::string rate = "1", mission = "shoal", log_level = "info", sigma = "auto", library;
   CLI::App app{"Hears a team of robots, matches their labels and republishes one consistent map.",
                "fusion_node"};
   app.set_version_flag("--version", std::string("fusion_node ") + version() + " (" + commit() + ")");
@@ -95,6 +96,10 @@ int main(int argc, char** argv) {
   app.add_option("--cell-size-m", options.cell_size_m, "edge of a cell, m, until a robot has said")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
+  app.add_option(
+         "--library", library,
+         "names of missions before, from `operator_console library save`: what is known arrives named")
+      ->check(CLI::ExistingFile);
   app.add_option("--state", options.state_dir, "folder in which the node answers `operator_console --node`");
   app.add_option("--out", options.out_dir, "folder for global_map.csv and labels.csv at the end");
   app.add_option("--log-level", log_level, "trace, debug, info, warn, error or off")->capture_default_str();
@@ -111,6 +116,7 @@ int main(int argc, char** argv) {
     options.matcher.sigma = matching::parseSigma(sigma);
     if (similarity->count() == 0)
       options.matcher.similarity = matching::usualSimilarity(options.matcher.matcher);
+    if (!library.empty()) options.library = mapping::parseLibrary(mapping::readFile(library), library);
     comms::channelName(options.name, "HEARTBEAT");  // a bad node name is a bad flag
     return run(options, link);
   } catch (const std::invalid_argument& error) {

@@ -46,6 +46,9 @@ class MissionState {
   /// What happened to nodes, as it was heard here.
   std::vector<mapping::MissionEvent> events() const { return events_.events(); }
 
+  /// What happened in an earlier life, after all that was heard in it has been heard again.
+  void restoreEvents(const std::vector<mapping::MissionEvent>& events) { events_.restore(events); }
+
   /// Takes in a piece of one's own.
   mapping::Applied apply(const mapping::Piece& piece);
 

@@ -12,6 +12,7 @@
 
 #include "fusion_node/authentication.h"
 #include "fusion_node/picture_files.h"
+#include "fusion_node/picture_question.h"
 #include "fusion_node/process.h"
 #include "shoal/comms/channels.h"
 #include "shoal/mapping/atomic_file.h"
@@ -26,6 +27,7 @@
 #include "shoal/wire/matches_codec.h"
 #include "shoal/wire/message_kind.h"
 #include "shoal/wire/piece_codec.h"
+#include "shoal/wire/repair_codec.h"
 
 namespace shoal::fusion_node {
 namespace {
@@ -35,6 +37,9 @@ using Json = nlohmann::ordered_json;
 // Wall time between two fusions, and between two whole maps on the local bus: people look, no result waits.
 constexpr int64_t kFusePeriodMs = 200;
 constexpr int64_t kPublishPeriodMs = 1000;
+
+// Of a message with a piece of the library: on every node the same, so that its parts are.
+constexpr size_t kMostLibraryBytes = 700;
 
 // Lists about the map are no part of the state, so nobody asks for them: they are repeated.
 constexpr int kListRepeats = 2;
@@ -58,12 +63,15 @@ Node::Node(const NodeOptions& options, comms::Bus& link, comms::Bus& local)
       clock_(options.rate),
       sender_(link, &local,
               senderOptions(options.budget, [this](int64_t now_us) { return heartbeat(now_us); })),
-      repair_({options.name, options.mission, options.budget, {}, true, {}}, state_, sender_),
+      repair_({options.name, options.mission, options.budget, {}, true, {}, {}}, state_, sender_),
       silence_(options.budget, wallMs()) {
   link.countInto(sender_.stats());
   if (!options.state_dir.empty()) {
     recall();
     loadEdits();
+  }
+  enterLibrary();
+  if (!options.state_dir.empty()) {
     queries_.emplace(options.state_dir, [this](const Json& question) { return answer(question); });
   }
 }
@@ -80,9 +88,11 @@ void Node::turn(int timeout_ms) {
     if (!packet.channel.starts_with(own)) silence_.heard(wallMs());
     hear(packet);
   });
+  commit();
   state_.passTime(static_cast<double>(wallMs()) * 1e-3);
   if (const auto warning = silence_.check(wallMs())) spdlog::warn("{}", *warning);
   warnOfStrangers();
+  checkLibrary();
   if (options_.rate == 0) clock_.advanceTo(state_.latestTime().us);
 
   const int64_t wall = wallMs();
@@ -118,17 +128,32 @@ void Node::turn(int timeout_ms) {
 
 void Node::hear(const comms::Packet& packet) {
   const bool is_new = state_.hear(packet, sender_.stats());
+  keep(packet, is_new);
+  repair_.hear(packet, clock_.now());
+}
+
+void Node::keep(const comms::Packet& packet, bool is_new) {
+  onDisk([&] { memory_->keep(packet, is_new); });
+}
+
+void Node::commit() {
+  onDisk([&] { memory_->commit(state_); });
+}
+
+// A disk that is full must not end the mission.
+void Node::onDisk(const std::function<void()>& act) {
+  if (!memory_) return;
   try {
-    if (memory_) memory_->keep(packet, is_new, state_);
-  } catch (const std::exception& error) {  // a disk that is full must not end the mission
+    act();
+  } catch (const std::exception& error) {
     spdlog::error("{}; from now on what is heard is kept in memory alone", error.what());
     memory_.reset();
   }
-  repair_.hear(packet, clock_.now());
 }
 
 // Comes back with all that it had heard before it ended, however it did; its clock goes on.
 void Node::recall() {
+  state_.passTime(static_cast<double>(wallMs()) * 1e-3);
   memory_.emplace(options_.state_dir, options_.name, options_.mission);
   const auto clock = memory_->recall(state_);
   if (!clock) return;
@@ -192,6 +217,43 @@ void Node::loadEdits() {
   }
 }
 
+// Known to this node at once, and said once as if somebody had asked, so that nodes that fuse and recordings
+// have it. Whoever misses it asks, as for all state.
+void Node::enterLibrary() {
+  if (!options_.library) return;
+  const std::string channel = comms::channelName(options_.name, "REPAIR");
+  for (const mapping::Piece& whole : mapping::piecesOf(*options_.library)) {
+    for (const mapping::Piece& part : wire::cutToFit(whole, kMostLibraryBytes)) {
+      state_.apply(part);
+      const auto name = nameOf(part.key, part.part);
+      sender_.offer(comms::TrafficClass::kRepairs,
+                    "library/" + std::to_string(name.first) + "/" + std::to_string(name.second),
+                    {channel, wire::encodeRepair(part, options_.mission, {})});
+    }
+  }
+  spdlog::info("library of {} names, digest {}", options_.library->topics.size(),
+               mapping::digestText(mapping::digestOf(*options_.library)));
+}
+
+// Two libraries in one mission: all nodes go by the same one, and whose is not followed says so.
+void Node::checkLibrary() {
+  if (!options_.library || warned_of_library_) return;
+  if (state_.beliefs().epochOf(mapping::kLibrary) == mapping::epochOf(*options_.library)) return;
+  warned_of_library_ = true;
+  spdlog::error("another node has another library, which counts for all; give every node the same file");
+}
+
+Json Node::libraryStatus() const {
+  const mapping::Library held = mapping::libraryIn(state_.beliefs());
+  const bool is_other =
+      options_.library && state_.beliefs().epochOf(mapping::kLibrary) != mapping::epochOf(*options_.library);
+  return {
+      {"names", held.topics.size()},
+      {"digest", mapping::digestText(mapping::digestOf(held))},
+      {"given", options_.library ? Json(mapping::digestText(mapping::digestOf(*options_.library))) : Json()},
+      {"differs", is_other}};
+}
+
 // Said again and again, as all pieces are.
 void Node::offer(const mapping::Edit& edit) {
   const mapping::Piece piece = mapping::pieceOf(edit);
@@ -214,6 +276,9 @@ Json Node::answerEdit(const Json& question) {
     if (state_.apply(mapping::pieceOf(edit)) == mapping::Applied::kRejected) {
       return {{"error", "too many edits are held already"}};
     }
+    const mapping::Piece piece = mapping::pieceOf(edit);
+    keep({comms::channelName(options_.name, "EDIT"), wire::encode(piece, options_.mission, now)}, true);
+    commit();
     offer(edit);
     spdlog::info("{}: {}", mapping::toText(edit.id), mapping::sentenceOf(edit));
     return mapping::editAnswer(edit, state_.beliefs());
@@ -225,6 +290,7 @@ Json Node::answerEdit(const Json& question) {
 Json Node::answer(const Json& question) {
   if (mapping::isEdit(question)) return answerEdit(question);
   state_.refreshMap();
+  if (question.value("query", "") == "ask") return answerAsk(question);
   const mapping::MissionView known = view();
   const auto beliefs = [this]() -> const mapping::BeliefStore& { return state_.beliefs(); };
   if (question.value("query", "") == "map" && question.contains("has"))
@@ -233,8 +299,32 @@ Json Node::answer(const Json& question) {
       mapping::answer({known, beliefs, state_.matcher(), [this] { return state_.events(); }}, question);
   if (question.value("query", "") == "status" && !answer.contains("error")) {
     answer["silent_s"] = std::round(silence_.silentSeconds(wallMs()) * 10) / 10;
+    if (state_.beliefs().epochOf(mapping::kLibrary) >= 0) answer["library"] = libraryStatus();
   }
   return answer;
+}
+
+// Says the price, and unless that is all, asks on the link.
+Json Node::answerAsk(const Json& question) {
+  try {
+    const SharperPicture wanted = sharperPicture(state_, question);
+    Json answer = priceOf(state_, wanted, options_.name, options_.budget);
+    if (question.value("dry_run", false) || answer["state"] == "sharp") return answer;
+    const auto robot = state_.heartbeats().find(name(wanted.key.robot));
+    if (robot != state_.heartbeats().end() && robot->second.phase == wire::Phase::kLeaving) {
+      return {{"error", robot->first + " has ended: nobody can make its pictures sharper"}};
+    }
+    for (const int32_t part : {0, 1}) {
+      const mapping::Piece* held = state_.beliefs().find(wanted.key, part);
+      if (held == nullptr || held->version < wanted.version) {
+        repair_.ask(wanted.key, part, wanted.version);
+      }
+    }
+    answer["state"] = "asked";
+    return answer;
+  } catch (const std::exception& error) {  // a peer's text
+    return {{"error", error.what()}};
+  }
 }
 
 mapping::MissionView Node::view() const {
@@ -260,6 +350,7 @@ void Node::finish() {
   for (int turns = 0; turns < 50; ++turns) {  // what already waits in the socket
     if (link_.receive(0, [this](const comms::Packet& packet) { hear(packet); }) == 0) break;
   }
+  commit();
   state_.refreshMap();
   publishMap();
   for (const auto& [reason, count] : sender_.stats().rejected)
@@ -272,6 +363,10 @@ void Node::finish() {
   if (const auto edits = mapping::editsOf(state_.beliefs()); !edits.empty()) {
     mapping::writeFileAtomically(options_.out_dir + "/edits.json",
                                  mapping::editsJson(options_.mission, edits));
+  }
+  if (state_.beliefs().epochOf(mapping::kLibrary) >= 0) {
+    mapping::writeFileAtomically(options_.out_dir + "/library.json",
+                                 mapping::libraryJson(mapping::libraryIn(state_.beliefs())));
   }
   writeLabelPictures(options_.out_dir + "/pictures",
                      mapping::picturesOfLabels(state_.map(), state_.beliefs()));

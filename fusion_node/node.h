@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,6 +16,7 @@
 #include "shoal/comms/bus.h"
 #include "shoal/comms/mission_clock.h"
 #include "shoal/comms/sender.h"
+#include "shoal/mapping/library.h"
 #include "shoal/mapping/map_changes.h"
 
 namespace shoal::fusion_node {
@@ -26,8 +28,9 @@ struct NodeOptions {
   double cell_size_m = 1;  ///< edge of a cell, until a robot has said
   double rate = 1.0;       ///< seconds of mission time per wall second; 0 = follow the robots
   matching::MatcherOptions matcher = matching::usualMatcher();
-  std::string state_dir;  ///< where questions are answered; empty = nowhere
-  std::string out_dir;    ///< where the map's files go at the end; empty = nowhere
+  std::string state_dir;                         ///< where questions are answered; empty = nowhere
+  std::string out_dir;                           ///< where the map's files go at the end; empty = nowhere
+  std::optional<mapping::Library> library = {};  ///< names from missions before
   const comms::AuthenticatedBus* authentication = nullptr;  ///< what the link is heard through, with a key
 };
 
@@ -53,13 +56,20 @@ class Node {
  private:
   comms::Packet heartbeat(int64_t now_us);
   void hear(const comms::Packet& packet);
+  void keep(const comms::Packet& packet, bool is_new);
+  void commit();
+  void onDisk(const std::function<void()>& act);
   void recall();
   void publishMap();
   mapping::MissionView view() const;
   void warnOfStrangers();
   nlohmann::ordered_json answer(const nlohmann::ordered_json& question);
+  nlohmann::ordered_json answerAsk(const nlohmann::ordered_json& question);
   nlohmann::ordered_json answerEdit(const nlohmann::ordered_json& question);
   void loadEdits();
+  void enterLibrary();
+  void checkLibrary();
+  nlohmann::ordered_json libraryStatus() const;
   void offer(const mapping::Edit& edit);
   int64_t wallMs() const;
 
@@ -76,6 +86,7 @@ class Node {
   SilenceAlarm silence_;
   std::map<std::string, size_t> num_chunks_;  // in the send queue, by channel
   size_t warned_of_strangers_ = 0;
+  bool warned_of_library_ = false;
   uint64_t published_digest_ = 0;
   int64_t fused_at_ms_ = 0, published_at_ms_ = 0;
 };

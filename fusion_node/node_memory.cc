@@ -4,19 +4,14 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
-#include <string_view>
 
 #include "fusion_node/limits.h"
 #include "shoal/comms/channels.h"
-#include "shoal/comms/log_reader.h"
-#include "shoal/mapping/atomic_file.h"
 #include "shoal/wire/message_kind.h"
-#include "shoal/wire/piece_codec.h"
 
 namespace shoal::fusion_node {
 namespace {
 
-constexpr uint64_t kLeastRewriteBytes = 4'000'000;
 constexpr int64_t kHeartbeatEveryUs = 10'000'000;
 
 int64_t wallUs() {
@@ -25,34 +20,38 @@ int64_t wallUs() {
       .count();
 }
 
+std::string madeIn(const std::string& folder, int32_t mission) {
+  std::filesystem::create_directories(folder);
+  return missionFilePath(folder, mission);
+}
+
 }  // namespace
 
-NodeMemory::NodeMemory(std::string folder, std::string node, int32_t mission)
-    : path_(std::move(folder) + "/heard.lcmlog"),
-      node_(std::move(node)),
-      mission_(mission),
-      rewrite_at_bytes_(kLeastRewriteBytes) {}
+std::string missionFilePath(const std::string& state_dir, int32_t mission) {
+  return state_dir + "/mission-" + std::to_string(mission) + ".sqlite";
+}
+
+NodeMemory::NodeMemory(const std::string& folder, const std::string& node, int32_t mission)
+    : path_(madeIn(folder, mission)), node_(node), mission_(mission), file_(path_, node, mission) {}
 
 std::optional<std::pair<int64_t, int64_t>> NodeMemory::recall(MissionState& state) {
   std::optional<std::pair<int64_t, int64_t>> clock;
-  if (std::filesystem::exists(path_)) {
-    const std::string own = comms::channelName(node_, "HEARTBEAT");
-    comms::Stats passed_over;
-    comms::LogReader log(path_);
-    while (const auto event = log.next()) {
-      const auto header = wire::peek(event->packet.bytes);
-      if (!header || header->mission != mission_) continue;  // of a mission before
-      state.hear(event->packet, passed_over);
-      if (event->packet.channel == own) clock = {header->time.us, event->time_us};
-    }
+  const std::string own = comms::channelName(node_, "HEARTBEAT");
+  comms::Stats passed_over;
+  MissionFileReader file(path_);
+  while (const auto event = file.next()) {
+    const auto header = wire::peek(event->packet.bytes);
+    if (!header || header->mission != mission_) continue;
+    state.hear(event->packet, passed_over);
+    if (event->packet.channel == own) clock = {header->time.us, event->time_us};
   }
-  log_.emplace(path_);
-  rewrite_at_bytes_ = std::max(kLeastRewriteBytes, 4 * log_->bytes());
+  const std::vector<mapping::MissionEvent> events = file_.events();
+  if (!events.empty()) last_event_ = events.back();
+  state.restoreEvents(events);
   return clock;
 }
 
-void NodeMemory::keep(const comms::Packet& packet, bool is_new, const MissionState& state) {
-  if (!log_) return;
+void NodeMemory::keep(const comms::Packet& packet, bool is_new) {
   if (packet.channel.ends_with("_HEARTBEAT")) {
     const auto header = wire::peek(packet.bytes);
     if (!header || header->mission != mission_) return;
@@ -63,28 +62,24 @@ void NodeMemory::keep(const comms::Packet& packet, bool is_new, const MissionSta
   } else if (!is_new) {
     return;
   }
-  log_->append(packet, wallUs());
-  if (log_->bytes() > rewrite_at_bytes_) rewrite(state);
+  file_.append(packet, wallUs());
+  has_kept_ = true;
 }
 
-void NodeMemory::rewrite(const MissionState& state) {
-  comms::Bytes out;
-  uint64_t number = 0;
-  const int64_t now_us = wallUs();
-  for (const auto& [node, heartbeat] : state.heartbeats()) {
-    const std::string channel = comms::channelName(node, "HEARTBEAT");
-    comms::appendLogEvent(out, {channel, wire::encode(heartbeat)}, number++, now_us);
+void NodeMemory::commit(const MissionState& state) {
+  if (!has_kept_) return;
+  has_kept_ = false;
+  const std::vector<mapping::MissionEvent> events = state.events();
+  auto fresh = events.begin();
+  if (last_event_) {
+    const auto known = std::find(events.rbegin(), events.rend(), *last_event_);
+    fresh = known.base();  // all of them when it was so long ago that it is forgotten
   }
-  state.beliefs().visit([&](const mapping::Piece& piece) {
-    const bool is_edit = piece.key.robot == mapping::kOperators;
-    const std::string channel = comms::channelName(is_edit ? node_ : world::name(piece.key.robot),
-                                                   wire::channelKind(wire::kindOf(piece)));
-    comms::appendLogEvent(out, {channel, wire::encode(piece, mission_, {})}, number++, now_us);
-  });
-  log_.reset();
-  mapping::writeFileAtomically(path_, {reinterpret_cast<const char*>(out.data()), out.size()});
-  log_.emplace(path_);
-  rewrite_at_bytes_ = std::max(kLeastRewriteBytes, 4 * log_->bytes());
+  for (; fresh != events.end(); ++fresh) {
+    file_.append(*fresh);
+    last_event_ = *fresh;
+  }
+  file_.commit();
 }
 
 }  // namespace shoal::fusion_node

@@ -5,20 +5,27 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "fusion_node/mission_file.h"
 #include "fusion_node/mission_state.h"
-#include "shoal/comms/log_writer.h"
 
 namespace shoal::fusion_node {
 
-/// What a node has heard, kept in its state folder as an LCM log of this mission alone: every piece once,
-/// heartbeats now and then. A piece is in the file before the node's heartbeat can say that it is held, so a
-/// node that is killed at any moment comes back with all that it has acknowledged. What newer versions have
-/// voided is left out when the file has grown to a multiple of what is held.
+/// The file in a node's state folder that holds what it heard of a mission.
+std::string missionFilePath(const std::string& state_dir, int32_t mission);
+
+/// What a node has heard, kept in its state folder as a MissionFile: every message with a piece that was new,
+/// heartbeats now and then, and what happened. What was heard at once is one transaction, which is over
+/// before the node's heartbeat can say that it is held, so a node that is killed at any moment comes back
+/// with all that it has acknowledged. Nothing is thrown away: the file is the mission's history, a few bytes
+/// more than what was heard for the first time.
 class NodeMemory {
  public:
   /// @param node  The node whose memory it is: its heartbeats are kept too, for its clock.
-  NodeMemory(std::string folder, std::string node, int32_t mission);
+  /// @throws std::runtime_error as MissionFile.
+  NodeMemory(const std::string& folder, const std::string& node, int32_t mission);
 
   /// Takes all that was kept into `state`. Returns the node's mission time in its last heartbeat, and the
   /// wall time of that, microseconds since 1970; nothing when there is none.
@@ -27,17 +34,21 @@ class NodeMemory {
 
   /// A packet was heard, or said by this node itself; `is_new` as MissionState::hear() says.
   /// @throws std::runtime_error naming the file that cannot be written.
-  void keep(const comms::Packet& packet, bool is_new, const MissionState& state);
+  void keep(const comms::Packet& packet, bool is_new);
+
+  /// What was kept is safe; events that are new to it too. To be called after what was heard at once, and
+  /// before any of it is acknowledged.
+  /// @throws std::runtime_error naming the file that cannot be written.
+  void commit(const MissionState& state);
 
  private:
-  void rewrite(const MissionState& state);
-
   std::string path_;
   std::string node_;
   int32_t mission_;
-  std::optional<comms::LogWriter> log_;
-  uint64_t rewrite_at_bytes_;
+  MissionFile file_;
+  bool has_kept_ = false;                             // since the last commit
   std::map<std::string, int64_t> heartbeat_kept_us_;  // by channel: mission time
+  std::optional<mapping::MissionEvent> last_event_;   // that is in the file
 };
 
 }  // namespace shoal::fusion_node

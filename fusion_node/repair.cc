@@ -215,6 +215,21 @@ void Repair::hear(const comms::Packet& packet, int64_t now_us) {
   if (!talk) return sender_.stats().countRejected(wire::name(wire::DecodeError::kBadPayload));
   if (isFlood(channel->node, now_us_)) return sender_.stats().countRejected("too many requests");
   talk_.hear(*talk, now_us_);
+  if (options_.make_wanted) makeWanted(*talk);
+}
+
+void Repair::makeWanted(const comms::RepairTalk& talk) {
+  for (const comms::Statement& said : talk.statements) {
+    if (said.kind != comms::Statement::Kind::kWanted || said.share != options_.own_share) continue;
+    for (const auto& named : said.leaves) {
+      const auto held = holdings_.treeOf(said.share).find(named.key);
+      if (!held || held->version < named.version) options_.make_wanted(named.key);
+    }
+  }
+}
+
+void Repair::ask(const mapping::PieceKey& key, int32_t part, const world::Version& version) {
+  talk_.want(nameOf(key, part), versionOf(version), now_us_);
 }
 
 int64_t Repair::pump(int64_t now_us) {

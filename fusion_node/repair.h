@@ -70,6 +70,9 @@ struct RepairOptions {
   bool fuses = true;                      ///< else it only passes on what others lack
   /// True for a piece of its own that is still to be said for the first time. None when empty.
   std::function<bool(const mapping::Piece&)> is_unsaid = {};
+  /// Somebody wants a piece of its own share that it does not hold, by its key as in nameOf(): it may make
+  /// it. None when empty.
+  std::function<void(uint64_t key)> make_wanted = {};
 };
 
 /// A node's part in repairing the state: hears requests and heartbeats, and gives the sender what to ask and
@@ -87,10 +90,14 @@ class Repair {
   /// Offers what is due. To be called before Sender::pump(); returns when there may be more, > now_us.
   int64_t pump(int64_t now_us);
 
+  /// Asks for a piece, in this version or a newer one, until it is heard or a few askings have been in vain.
+  void ask(const mapping::PieceKey& key, int32_t part, const world::Version& version);
+
   /// For a heartbeat: what a node that fuses holds of every robot; of others StateHoldings::unmet().
   std::vector<wire::Heartbeat::Share> roster(int64_t now_us);
 
  private:
+  void makeWanted(const comms::RepairTalk& talk);
   bool isFlood(const std::string& node, int64_t now_us);
 
   RepairOptions options_;

@@ -30,10 +30,16 @@ void addDiffCommand(CLI::App& app, Action& chosen);
 void addNodeCommand(CLI::App& app, Action& chosen);
 /// name, link, unlink, exclude, undo; edits, which lists them; events.
 void addEditCommands(CLI::App& app, Action& chosen);
+/// ask: a sharper picture from a robot, after its price.
+void addAskCommand(CLI::App& app, Action& chosen);
 /// score: the map as it is held, against the truth.
 void addScoreCommand(CLI::App& app, Action& chosen);
 /// completion SHELL: a script that completes commands and flags.
 void addCompletionCommand(CLI::App& app, Action& chosen);
+/// library save: names for the next mission; library show.
+void addLibraryCommand(CLI::App& app, Action& chosen);
+/// import BAG: a ROS 2 bag as a recording in TUM layout.
+void addImportCommand(CLI::App& app, Action& chosen);
 /// keygen FILE: a key for a team.
 void addKeygenCommand(CLI::App& app, Action& chosen);
 void addEvaluateCommand(CLI::App& app, Action& chosen);

@@ -73,11 +73,15 @@ void addDiffCommand(CLI::App& app, Action& chosen) {
   command->add_flag("--csv", q->csv, "answer in CSV, a row a changed cell")
       ->excludes(command->get_option("--json"));
   command->footer(
-      "Asks a recording (--log, or --run of a mission flown with --record): the maps are those that a node\n"
+      "Asks a recording (--log, or --run of a mission flown with --record) or what a node remembers (--node, "
+      "also\n"
+      "after it was started again; when it matched otherwise than usual, say how): the maps are those that a "
+      "node\n"
       "held which had heard all that was sent by then. A cell has appeared, was seen anew with another "
       "label,\n"
       "was relabelled without being seen again, or is gone.\n\n"
       "  operator_console diff 0:30 1:00 --run runs/a\n"
+      "  operator_console diff 30 60 --node state\n"
       "  operator_console diff 30 60 --log runs/a/mission.lcmlog --csv > changes.csv");
   command->callback([q, &chosen] { chosen = [q] { return diff(*q); }; });
 }

@@ -88,7 +88,7 @@ void prepareFolder(const LaunchOptions& options) {
   if (fs::exists(out / "logs" / "OPERATOR.log")) {
     for (const std::string_view name :
          {"robots", "single", "logs", "state", "global_map.csv", "global_map.png", "labels.csv",
-          "summary.json", "summary.html", "edits.json", "mission.lcmlog"}) {
+          "summary.json", "summary.html", "edits.json", "library.json", "mission.lcmlog"}) {
       fs::remove_all(out / name);
     }
   }

@@ -39,6 +39,10 @@ void addLaunchCommand(CLI::App& app, Action& chosen) {
       ->capture_default_str();
   command->add_option("--key", o.key,
                       "file with the team's key, made by keygen: only who has it is listened to");
+  command
+      ->add_option("--library", o.library,
+                   "names of missions before, from library save: what is known arrives named")
+      ->check(CLI::ExistingFile);
   command->add_option("--rate", o.rate, "mission seconds per wall second: 1, 10, or max")
       ->capture_default_str();
   command

@@ -35,6 +35,7 @@ struct LaunchOptions {
   std::string lcm_url;            ///< empty = on a free port
   int32_t mission = 0;            ///< 0 = a number of its own
   double settle_timeout_s = 300;  ///< wall time without any change after which a landed team is given up
+  std::string library;            ///< file of names from missions before; empty = none
   std::string kill_plan;          ///< file of crashes on schedule: kill_plan.h; empty = none
   std::string log_level = "info";
 };

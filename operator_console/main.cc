@@ -29,6 +29,7 @@ int main(int argc, char** argv) {
   console::addLaunchCommand(app, chosen);
   console::addMatchCommand(app, chosen);
   console::addPlayCommand(app, chosen);
+  console::addImportCommand(app, chosen);
   console::addEvaluateCommand(app, chosen);
   console::addReplayCommand(app, chosen);
   console::addVerifyCommand(app, chosen);
@@ -41,10 +42,12 @@ int main(int argc, char** argv) {
   console::addDiffCommand(app, chosen);
   console::addNodeCommand(app, chosen);
   console::addEditCommands(app, chosen);
+  console::addAskCommand(app, chosen);
   console::addScoreCommand(app, chosen);
   console::addServeCommand(app, chosen);
   console::addSpyCommand(app, chosen);
   console::addDoctorCommand(app, chosen);
+  console::addLibraryCommand(app, chosen);
   console::addKeygenCommand(app, chosen);
   console::addCompletionCommand(app, chosen);
   try {

@@ -19,12 +19,24 @@ std::string SealCounts::text() const {
 }
 
 MessageLog::MessageLog(const std::string& path, const std::string& key_file)
-    : key_(fusion_node::readKey(key_file)), log_(path) {
+    : key_(fusion_node::readKey(key_file)) {
+  if (fusion_node::isSqlite(path)) {
+    file_.emplace(path);
+  } else {
+    log_.emplace(path);
+  }
   seals_.checked = key_.has_value();
 }
 
+const comms::LogCounts& MessageLog::counts() const {
+  static const comms::LogCounts kNothingWrong;
+  return log_ ? log_->counts() : kNothingWrong;
+}
+
+std::optional<comms::LogEvent> MessageLog::nextOfFile() { return log_ ? log_->next() : file_->next(); }
+
 std::optional<comms::LogEvent> MessageLog::next() {
-  while (auto event = log_.next()) {
+  while (auto event = nextOfFile()) {
     if (!event->packet.channel.starts_with("SHOAL_")) return event;  // cameras, LCM's own self test
     const auto seal = key_ ? comms::checkSeal(*key_, event->packet) : std::nullopt;
     const bool is_good = key_ ? seal && heard_.emplace(seal->session, seal->counter).second

@@ -9,6 +9,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "fusion_node/mission_file.h"
 #include "shoal/comms/log_reader.h"
 #include "shoal/comms/seal.h"
 
@@ -24,8 +25,8 @@ struct SealCounts {
   std::string text() const;  ///< a line, or nothing when there is nothing to say
 };
 
-/// Reads a recording's messages as LogReader does, without their seals. With a key, messages on our channels
-/// that it did not seal are left out, and those that somebody said again.
+/// Reads the messages of a recording, or of what a node remembers (MissionFile), without their seals. With a
+/// key, messages on our channels that it did not seal are left out, and those that somebody said again.
 class MessageLog {
  public:
   /// @param key_file  empty: seals are removed unseen.
@@ -34,12 +35,15 @@ class MessageLog {
 
   std::optional<comms::LogEvent> next();
 
-  const comms::LogCounts& counts() const { return log_.counts(); }
+  const comms::LogCounts& counts() const;
   const SealCounts& seals() const { return seals_; }
 
  private:
+  std::optional<comms::LogEvent> nextOfFile();
+
   std::optional<comms::SealKey> key_;
-  comms::LogReader log_;
+  std::optional<comms::LogReader> log_;
+  std::optional<fusion_node::MissionFileReader> file_;  // one of the two
   SealCounts seals_;
   std::set<std::pair<uint32_t, uint32_t>> heard_;  // sessions and counters of right seals
 };

@@ -78,6 +78,7 @@ Command operatorCommand(const LaunchOptions& options) {
                      options.matcher.sigma ? text(*options.matcher.sigma) : "auto", "--cell-size-m",
                      text(options.cell_size_m), "--out", options.out, "--state", operatorStateDir(options),
                      "--log-level", options.log_level});
+  if (!options.library.empty()) append(arguments, {"--library", options.library});
   return {"OPERATOR", programBeside("fusion_node"), arguments, logPath(options, "OPERATOR")};
 }
 

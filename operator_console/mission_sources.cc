@@ -19,6 +19,7 @@
 #include "shoal/mapping/edits_answer.h"
 #include "shoal/mapping/edits_file.h"
 #include "shoal/mapping/fusion.h"
+#include "shoal/mapping/library.h"
 #include "shoal/mapping/map_files.h"
 #include "shoal/mapping/questions.h"
 
@@ -74,6 +75,12 @@ mapping::BeliefStore storeOfRun(const std::string& dir, const world::Grid& grid,
   for (const mapping::LocalBelief& belief : eval::readRun(dir, grid).robots) {
     for (const mapping::Piece& piece : mapping::wholePieces(belief)) store.apply(piece);
   }
+  const std::string library = dir + "/library.json";
+  if (std::filesystem::exists(library)) {
+    for (const mapping::Piece& piece :
+         mapping::piecesOf(mapping::parseLibrary(mapping::readFile(library), library)))
+      store.apply(piece);
+  }
   for (const mapping::Edit& edit : edits) store.apply(mapping::pieceOf(edit));
   return store;
 }
@@ -100,7 +107,7 @@ mapping::MissionView viewOfRun(const std::string& dir) {
   mapping::MissionView view = filesOfRun(dir);
   const Where where{.node = {}, .run = dir, .log = {}, .matcher = matching::usualMatcher()};
   const auto edits = mapping::readEdits(editsPathOf(where), view.mission);
-  if (edits.empty()) return view;
+  if (edits.empty() && !std::filesystem::exists(dir + "/library.json")) return view;
   const uint64_t of_state = view.map.state_digest;
   view.map = mapping::fuse(storeOfRun(dir, world::Grid(view.cell_size_m), edits), matcherOf(where));
   view.map.state_digest = of_state;
@@ -184,11 +191,30 @@ matching::MatcherOptions matcherOf(const Where& where) {
   }
 }
 
+namespace {
+
+// What a node keeps of the mission that it heard last.
+std::string newestMissionFile(const std::string& state_dir) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  std::vector<std::pair<fs::file_time_type, std::string>> files;
+  for (const auto& entry : fs::directory_iterator(state_dir, error)) {
+    const std::string name = entry.path().filename();
+    if (!name.starts_with("mission-") || !name.ends_with(".sqlite")) continue;
+    fs::file_time_type newest = entry.last_write_time();
+    const fs::path ahead = entry.path().string() + "-wal";
+    if (fs::exists(ahead)) newest = std::max(newest, fs::last_write_time(ahead));
+    files.emplace_back(newest, entry.path());
+  }
+  if (files.empty()) throw std::runtime_error(state_dir + " holds no mission that a node has heard");
+  return std::ranges::max(files).second;
+}
+
+}  // namespace
+
 std::string recordingOf(const Where& where) {
   if (!where.log.empty()) return where.log;
-  if (where.run.empty()) {
-    throw std::runtime_error("a running node keeps no history; ask a recording with --log or --run");
-  }
+  if (!where.node.empty()) return newestMissionFile(where.node);
   std::string path = where.run + "/mission.lcmlog";
   if (!std::filesystem::exists(path)) {
     throw std::runtime_error(path + " is missing: only a mission flown with --record has a history");

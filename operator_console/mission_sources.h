@@ -32,8 +32,8 @@ std::string editsPathOf(const Where& where);
 /// How the map of a run was matched, as its summary.json says; else what `where` says.
 matching::MatcherOptions matcherOf(const Where& where);
 
-/// The recording to look into for the past: --log, or the mission.lcmlog of --run.
-/// @throws std::runtime_error when there is none: a node keeps no history.
+/// What to look into for the past: --log, the mission.lcmlog of --run, or the newest file of --node.
+/// @throws std::runtime_error when there is none: a run that was not recorded, a node that has heard nothing.
 std::string recordingOf(const Where& where);
 
 /// Answers any question of mapping/questions.h from wherever, and makes the edits of mapping/edit_question.h.

@@ -45,10 +45,16 @@ void labels(Question& q) {
   }
   fmt::print("{:>9}  {:<14} {:>7} {:>10} {:>15} {:>5}  {}\n", "label", "name", "cells", "area m2", "seen s",
              "sure", "robots");
+  bool knows = false;
   for (const Json& row : a["labels"]) {
     const int label = row["label"];
+    const bool has_library = row.contains("library");
+    knows |= has_library;
     fmt::print(
-        "{:>9}  {} {:>7} {:>10.1f} {:>15} {:>5.2f}  {}{}\n", label,
+        "{:>9}{} {} {:>7} {:>10.1f} {:>15} {:>5.2f}  {}{}\n", label,
+        !has_library             ? ' '
+        : row["library"].empty() ? '+'
+                                 : '*',
         shortened(row["name"].get<std::string>(), 14), row["cells"].get<int64_t>(),
         row["area_m2"].get<double>(),
         fmt::format("{:.0f} - {:.0f}", row["first_seen_s"].get<double>(), row["last_seen_s"].get<double>()),
@@ -56,6 +62,7 @@ void labels(Question& q) {
         row["robots"].size() > 2 ? fmt::format("{} robots", row["robots"].size()) : joined(row["robots"]),
         isOnTerminal() ? " " + swatch(colorOf(world::GlobalLabel{label})) : "");
   }
+  if (knows) fmt::print("* known from the library   + new: nothing in the library is like it\n");
 }
 
 void at(Question& q) {

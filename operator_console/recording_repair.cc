@@ -8,6 +8,7 @@
 #include "shoal/comms/channels.h"
 #include "shoal/comms/log_reader.h"
 #include "shoal/comms/repair_talk.h"
+#include "shoal/mapping/library.h"
 #include "shoal/wire/repair_codec.h"
 #include "shoal/world/ids.h"
 
@@ -24,8 +25,8 @@ std::set<int32_t> differingShares(const mapping::BeliefStore& beliefs,
     if (const auto robot = world::parseRobotId(node)) {
       if (heartbeat.own_digest != beliefs.digestOf(*robot)) shares.insert(number(*robot));
     }
-    for (const auto& share : heartbeat.roster) {  // what operators decided
-      if (share.robot == mapping::kOperators &&
+    for (const auto& share : heartbeat.roster) {  // what operators decided, and knew before
+      if ((share.robot == mapping::kOperators || share.robot == mapping::kLibrary) &&
           share.digest != wire::shareDigest(beliefs.digestOf(share.robot)))
         shares.insert(number(share.robot));
     }

@@ -14,6 +14,7 @@
 #include "operator_console/render.h"
 #include "shoal/mapping/atomic_file.h"
 #include "shoal/mapping/belief_files.h"
+#include "shoal/mapping/library.h"
 #include "shoal/mapping/map_files.h"
 
 namespace shoal::console {
@@ -24,6 +25,7 @@ using Json = nlohmann::ordered_json;
 std::vector<world::RobotId> robotsOf(const fusion_node::MissionState& state) {
   std::vector<world::RobotId> robots = state.beliefs().robots();
   std::erase(robots, mapping::kOperators);
+  std::erase(robots, mapping::kLibrary);
   return robots;
 }
 

@@ -53,6 +53,13 @@ void print(const Json& a) {
              a["cells"].get<int64_t>(), a["labels"].get<int64_t>(), a["cell_size_m"].get<double>());
   fmt::print("state {}, map {}\n", a["digest"]["state"].get<std::string>(),
              a["digest"]["map"].get<std::string>());
+  if (const auto library = a.find("library"); library != a.end()) {
+    fmt::print("library of {} names, digest {}{}\n", (*library)["names"].get<int>(),
+               (*library)["digest"].get<std::string>(),
+               (*library)["differs"].get<bool>()
+                   ? alarming(", NOT THE ONE THIS NODE WAS GIVEN: " + (*library)["given"].get<std::string>())
+                   : "");
+  }
   fmt::print("{:<9} {:<7} {:>8} {:>7} {:>6} {:>6} {:>5} {:>6} {:>4} {:<4} {}\n", "node", "phase", "heard s",
              "images", "topics", "cells", "used", "queue", "bad", "told", "map");
   for (const Json& n : a["nodes"]) printRow(n);

@@ -14,6 +14,7 @@
 #include "shoal/comms/channels.h"
 #include "shoal/mapping/atomic_file.h"
 #include "shoal/mapping/belief_files.h"
+#include "shoal/mapping/held_pictures.h"
 #include "shoal/mapping/map_files.h"
 #include "shoal/wire/piece_codec.h"
 #include "shoal/wire/repair_codec.h"
@@ -56,6 +57,9 @@ constexpr size_t kPublishEvery = 5;
 // A multiple of that. What was flown since the last checkpoint is flown again after a crash, with the same
 // result; a live source cannot be, so then every word that is said stands in a checkpoint first.
 constexpr size_t kSaveEvery = 25;
+
+// Pieces that others want made, between two publications.
+constexpr size_t kMostWanted = 256;
 
 std::string queueKey(const mapping::PieceKey& key, int32_t part) {
   std::string text = std::to_string(static_cast<int>(key.kind));
@@ -120,6 +124,9 @@ Agent::Agent(const AgentOptions& options, world::ObservationSource& source, comm
                [this](const mapping::Piece& piece) {
                  return piece.key.robot == options_.explorer.robot &&
                         sender_.queue().isWaiting(queueKey(piece.key, piece.part));
+               },
+               [this](uint64_t key) {
+                 if (wanted_.size() < kMostWanted) wanted_.insert(key);
                }},
               others_, sender_),
       silence_(options.budget, wallMs()) {
@@ -187,7 +194,10 @@ void Agent::takeIn(const world::Observation& observation) {
   explorer_.observe(observation);
   belief_ = explorer_.belief();
   path_.push_back({observation.time, observation.world_from_camera});
-  if (path_.size() % kPublishEvery == 0) publish();
+  if (path_.size() % kPublishEvery == 0) {
+    publish();
+    sharpenWanted();
+  }
   if (path_.size() % (options_.live ? kPublishEvery : kSaveEvery) == 0) save();
   const robot::StageTimes& t = explorer_.lastTimes();
   const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
@@ -248,6 +258,33 @@ void Agent::offer(const mapping::Piece& part) {
   said_.insert_or_assign(key, part);
 }
 
+// Sharper pictures are the only thing that is made because somebody wants it. To be called when all that
+// changed has been offered, so that a checkpoint can remember what is said here.
+void Agent::sharpenWanted() {
+  bool has_said = false;
+  for (const mapping::ExamplePicture& example : belief_.examples) {
+    const mapping::PieceKey shown = {
+        options_.explorer.robot, mapping::PieceKind::kPicture, {number(example.topic), example.number, 0}};
+    mapping::PieceKey sharper = shown;
+    sharper.index[1] += mapping::kSharperBy;
+    if (!wanted_.contains(fusion_node::nameOf(sharper, 0).second) &&
+        !wanted_.contains(fusion_node::nameOf(sharper, 1).second)) {
+      continue;
+    }
+    const world::Version version{options_.explorer.epoch, example.observation};
+    const auto isSaid = [&](const mapping::PieceKey& key) {
+      const mapping::Piece* said = own_.find(key, 0);
+      return said != nullptr && said->version == version;
+    };
+    if (!isSaid(shown) || isSaid(sharper)) continue;
+    for (const mapping::Piece& layer : wire::sharperPieces(example, sharper.robot, version.epoch)) say(layer);
+    spdlog::info("was asked for a sharper picture of topic {}", number(example.topic));
+    has_said = true;
+  }
+  wanted_.clear();
+  if (has_said) save();
+}
+
 // As if there had been no crash: what was learnt, what was said, what was still to be said.
 void Agent::resume() {
   const Checkpoint& c = *options_.resume;
@@ -304,6 +341,7 @@ void Agent::listen(int timeout_ms) {
     others_.hear(packet, sender_.stats());
     repair_.hear(packet, clock_.now());
   });
+  if (phase_ == wire::Phase::kLanded) sharpenWanted();
   if (const auto warning = silence_.check(wallMs())) spdlog::warn("{}", *warning);
   if (options_.fuse && phase_ != wire::Phase::kFlying) others_.refresh();
   for (; warned_of_missions_ < others_.otherMissions().size(); ++warned_of_missions_) {

@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -61,6 +62,7 @@ class Agent {
   void publish();
   void say(const mapping::Piece& part);
   void offer(const mapping::Piece& part);
+  void sharpenWanted();
   void passTimeUntil(int64_t to_us);
   void listen(int timeout_ms);
   bool isHeard() const;
@@ -75,6 +77,7 @@ class Agent {
   robot::Explorer explorer_;
   mapping::BeliefChanges changes_;
   wire::PictureChanges picture_changes_;
+  std::set<uint64_t> wanted_;  // keys of pieces of ours that nobody has made yet
   mapping::LocalBelief belief_;
   mapping::BeliefStore own_;                                 // what was said, for its digest
   std::map<mapping::PieceKey, int32_t> num_parts_;           // keys in the send queue

@@ -25,6 +25,7 @@
 #include "shoal/comms/lcm_url.h"
 #include "shoal/comms/rate_limited_bus.h"
 #include "shoal/mapping/atomic_file.h"
+#include "shoal/mapping/library.h"
 #include "shoal/version.h"
 #include "shoal/world/place.h"
 
@@ -154,6 +155,8 @@ int run(Flags flags) {
     throw std::invalid_argument("robot " + flags.robot + " is not of a team of " +
                                 std::to_string(flags.survey.num_robots) + "; raise --robots");
   }
+  if (*id == mapping::kLibrary)
+    throw std::invalid_argument("R9999 is the library of names; robots are R00 to R9998");
   options.explorer.robot = *id;
   options.mission = fusion_node::missionId(flags.mission);
   options.rate = fusion_node::parseRate(flags.rate);

@@ -66,6 +66,10 @@ class AntiEntropy {
   /// A piece was heard, in this version; `repaired` when not by its owner for the first time.
   void heard(const PieceName& piece, uint64_t version, bool repaired, int64_t now_us);
 
+  /// A piece is wanted in this version or a newer one: it is asked for, a few times, until it is heard. Also
+  /// one that nobody is known to hold: its owner may make it.
+  void want(const PieceName& piece, uint64_t version, int64_t now_us);
+
   /// What to say now, if anything; it counts as said.
   /// Cost: O(what waits), at most 10^4.
   std::optional<RepairTalk> nextTalk(int64_t now_us);
@@ -106,7 +110,6 @@ class AntiEntropy {
   void hearLeaves(const Statement& said, int64_t now_us);
   void hearWanted(const Statement& said, int64_t now_us);
   void scheduleRepair(const PieceName& piece, int64_t now_us);
-  void want(const PieceName& piece, uint64_t version, int64_t now_us);
   bool add(RepairTalk& talk, size_t& room, Statement statement) const;
   void addWanted(RepairTalk& talk, size_t& room, int64_t now_us);
   void addAnswers(RepairTalk& talk, size_t& room, int64_t now_us);

@@ -8,6 +8,7 @@
 
 #include "shoal/demand.h"
 #include "shoal/mapping/label_identity.h"
+#include "shoal/mapping/library.h"
 #include "shoal/mapping/topic_matching.h"
 
 namespace shoal::mapping {
@@ -232,7 +233,7 @@ std::vector<LabelSummary> FusedMap::summarize(const StackedTopics& stacked) cons
   }
   for (const HeardTopic& topic : stacked.topics) {
     const auto row = rows.find(label_.of({topic.robot, topic.id}));
-    if (row == rows.end()) continue;
+    if (row == rows.end() || topic.robot == kLibrary) continue;  // nobody saw it here
     if (!containsRobot(row->second.robots, topic.robot)) row->second.robots.push_back(topic.robot);
     row->second.first_seen = std::min(row->second.first_seen, topic.created);
   }

@@ -52,10 +52,12 @@ std::map<Topic, int64_t> weightsOf(const BeliefStore& beliefs) {
 
 std::vector<HeldPicture> heldPictures(const BeliefStore& beliefs) {
   std::vector<HeldPicture> pictures;
+  std::map<PieceKey, size_t> place;  // among them
   beliefs.visit([&](const Piece& piece) {
     const auto* part = std::get_if<PicturePart>(&piece.content);
-    if (part == nullptr || part->layer.empty()) return;
+    if (part == nullptr || part->layer.empty() || piece.key.index[1] >= kSharperBy) return;
     if (piece.part == 0) {
+      place.emplace(piece.key, pictures.size());
       pictures.push_back({.robot = piece.key.robot,
                           .topic = world::TopicId{piece.key.index[0]},
                           .number = piece.key.index[1],
@@ -67,6 +69,22 @@ std::vector<HeldPicture> heldPictures(const BeliefStore& beliefs) {
     HeldPicture& picture = pictures.back();  // part 0 of a piece that is held comes first
     if (piece.part == static_cast<int32_t>(picture.layers.size())) picture.layers.push_back(part->layer);
   });
+  for (const auto& [key, i] : place) {
+    const Piece* shown = beliefs.find(key, 0);
+    std::vector<std::vector<uint8_t>> layers;
+    int32_t num_layers = 1;
+    beliefs.visitOf(PieceKey{key.robot, key.kind, {key.index[0], key.index[1] + kSharperBy, 0}},
+                    [&](const Piece& piece) {
+                      const auto* part = std::get_if<PicturePart>(&piece.content);
+                      if (part == nullptr || part->layer.empty() || piece.version != shown->version) return;
+                      num_layers = piece.num_parts;
+                      if (piece.part == static_cast<int32_t>(layers.size())) layers.push_back(part->layer);
+                    });
+    if (std::ssize(layers) != num_layers) continue;
+    pictures[i].num_layers = num_layers;
+    pictures[i].layers = std::move(layers);
+    pictures[i].sharpened = true;
+  }
   return pictures;
 }
 
@@ -93,21 +111,22 @@ std::map<world::GlobalLabel, std::vector<HeldPicture>> picturesOfLabels(const Gl
   return pictures;
 }
 
+Json toJson(const HeldPicture& p) {
+  Json layers = Json::array();
+  for (const auto& layer : p.layers) layers.push_back(hex(layer));
+  Json json{{"robot", name(p.robot)},     {"topic", number(p.topic)},
+            {"example", p.number},        {"cell", {p.cell.x, p.cell.y, p.cell.z}},
+            {"seen_s", p.seen.seconds()}, {"num_layers", p.num_layers},
+            {"layers", std::move(layers)}};
+  if (p.sharpened) json["sharpened"] = true;
+  return json;
+}
+
 Json picturesAnswer(const LabelPictures& of_labels) {
   Json labels = Json::array();
   for (const auto& [label, pictures] : of_labels) {
     Json row{{"label", number(label)}, {"pictures", Json::array()}};
-    for (const HeldPicture& p : pictures) {
-      Json layers = Json::array();
-      for (const auto& layer : p.layers) layers.push_back(hex(layer));
-      row["pictures"].push_back({{"robot", name(p.robot)},
-                                 {"topic", number(p.topic)},
-                                 {"example", p.number},
-                                 {"cell", {p.cell.x, p.cell.y, p.cell.z}},
-                                 {"seen_s", p.seen.seconds()},
-                                 {"num_layers", p.num_layers},
-                                 {"layers", std::move(layers)}});
-    }
+    for (const HeldPicture& p : pictures) row["pictures"].push_back(toJson(p));
     labels.push_back(std::move(row));
   }
   return {{"labels", std::move(labels)}};
@@ -127,7 +146,8 @@ LabelPictures picturesFrom(const Json& answer) {
                          .cell = {p.at("cell").at(0), p.at("cell").at(1), p.at("cell").at(2)},
                          .seen = {std::llround(p.at("seen_s").get<double>() * 1e6)},
                          .num_layers = p.at("num_layers"),
-                         .layers = {}};
+                         .layers = {},
+                         .sharpened = p.value("sharpened", false)};
         for (const Json& layer : p.at("layers")) held.layers.push_back(bytesOf(layer.get<std::string>()));
         if (held.layers.empty()) throw std::runtime_error("a picture has no layer");
         of_label.push_back(std::move(held));

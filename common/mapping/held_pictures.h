@@ -12,6 +12,10 @@
 
 namespace shoal::mapping {
 
+/// Examples from this number on are no others: they are example `number - kSharperBy` once more, sharper,
+/// made and said only when somebody has asked for it. Their version is that of the example they show.
+inline constexpr int32_t kSharperBy = 4;
+
 /// What is held of one example picture of a robot's topic.
 struct HeldPicture {
   world::RobotId robot{};
@@ -21,10 +25,12 @@ struct HeldPicture {
   world::Timestamp seen;                     ///< mission time of the image
   int32_t num_layers = 1;                    ///< that it has
   std::vector<std::vector<uint8_t>> layers;  ///< from the first on, without a gap; at least one
+  bool sharpened = false;                    ///< the layers are those that somebody asked for
   bool operator==(const HeldPicture&) const = default;
 };
 
 /// All that a state holds, ascending by robot, topic and number; examples that are no more are left out.
+/// Where all layers of a sharper one are held, they stand in place of the example's own.
 std::vector<HeldPicture> heldPictures(const BeliefStore& beliefs);
 
 /// The pictures of each label of the map, at most `most` each: those of the topic that the label is named
@@ -33,6 +39,9 @@ std::vector<HeldPicture> heldPictures(const BeliefStore& beliefs);
 std::map<world::GlobalLabel, std::vector<HeldPicture>> picturesOfLabels(const GlobalMap& map,
                                                                         const BeliefStore& beliefs,
                                                                         size_t most = 4);
+
+/// One picture as the answers show it, its layers in hexadecimal digits.
+nlohmann::ordered_json toJson(const HeldPicture& picture);
 
 using LabelPictures = std::map<world::GlobalLabel, std::vector<HeldPicture>>;
 

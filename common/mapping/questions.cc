@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "shoal/mapping/questions.h"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -8,6 +9,7 @@
 #include "shoal/mapping/area_answer.h"
 #include "shoal/mapping/edits_answer.h"
 #include "shoal/mapping/held_pictures.h"
+#include "shoal/mapping/library.h"
 #include "shoal/mapping/map_files.h"
 #include "shoal/mapping/node_answer.h"
 #include "shoal/mapping/why_answer.h"
@@ -41,6 +43,22 @@ Json picturesOf(const Witness& witness, const Json& question) {
   return picturesAnswer(picturesOfLabels(witness.view.map, beliefs, static_cast<size_t>(most)));
 }
 
+// With a library in force, each label says what it is called there: nothing when it is new.
+Json labelsOf(const Witness& witness) {
+  const MissionView& view = witness.view;
+  Json answer = labelsAnswer(view);
+  if (std::ranges::find(view.map.correspondences, kLibrary, &Correspondence::robot) ==
+      view.map.correspondences.end()) {
+    return answer;
+  }
+  const auto names = libraryNames(view.map, witness.beliefs());
+  for (Json& row : answer["labels"]) {
+    const auto known = names.find(world::GlobalLabel{row["label"].get<int32_t>()});
+    row["library"] = known == names.end() ? std::vector<std::string>{} : known->second;
+  }
+  return answer;
+}
+
 Json mapAnswer(const MissionView& view) {
   const world::Grid grid(view.cell_size_m);
   return {{"cell_size_m", view.cell_size_m},
@@ -55,7 +73,11 @@ Json answer(const Witness& witness, const Json& question) {
   try {
     const std::string query = question.value("query", "");
     if (query == "status") return statusAnswer(view);
-    if (query == "labels") return labelsAnswer(view);
+    if (query == "labels") return labelsOf(witness);
+    if (query == "library") {
+      const BeliefStore& beliefs = witness.beliefs();  // first: of a finished run, it completes the map
+      return {{"library", libraryJson(libraryOf(view.map, beliefs))}};
+    }
     if (query == "map") return mapAnswer(view);
     if (query == "pictures") return picturesOf(witness, question);
     if (query == "at") return atAnswer(view, witness.beliefs(), question.at("x"), question.at("y"));
@@ -68,8 +90,8 @@ Json answer(const Witness& witness, const Json& question) {
       return eventsAnswer(view, witness.beliefs(), seen);
     }
     return {{"error",
-             "unknown question; questions are status, labels, map, pictures, at, area, why, node, edits and "
-             "events"}};
+             "unknown question; questions are status, labels, map, pictures, library, at, area, why, node, "
+             "edits and events"}};
   } catch (const Json::exception& error) {
     return {{"error", error.what()}};
   } catch (const std::invalid_argument& error) {

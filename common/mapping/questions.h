@@ -23,7 +23,7 @@ struct Witness {
 };
 
 /// Answers one question, {"query": NAME, ...}:
-///   status | labels | map | pictures
+///   status | labels | map | pictures | library
 ///   at    x, y            numbers, metres
 ///   area  label, and optionally min_m2, since_s, certainty
 ///   why   label           number as text, or name

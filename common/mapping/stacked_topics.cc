@@ -6,6 +6,8 @@
 #include <numeric>
 #include <set>
 
+#include "shoal/mapping/library.h"
+
 namespace shoal::mapping {
 namespace {
 
@@ -15,6 +17,7 @@ using TopicKey = std::pair<world::RobotId, world::TopicId>;
 std::vector<int32_t> commonLayout(const std::vector<HeardTopic>& topics) {
   std::vector<std::pair<std::vector<int32_t>, std::set<world::RobotId>>> users;
   for (const HeardTopic& topic : topics) {
+    if (topic.robot == kLibrary) continue;
     auto known = std::ranges::find(users, topic.group_sizes, [](const auto& u) { return u.first; });
     if (known == users.end()) known = users.insert(users.end(), {topic.group_sizes, {}});
     known->second.insert(topic.robot);
@@ -69,7 +72,7 @@ StackedTopics stack(const BeliefStore& beliefs, const std::set<world::RobotId>& 
   const world::RobotId* last = nullptr;
   int32_t next_vertex = 0;
   for (const HeardTopic& topic : stacked.topics) {
-    const bool takes_part = topic.cells > 0 && topic.group_sizes == layout;
+    const bool takes_part = (topic.cells > 0 || topic.robot == kLibrary) && topic.group_sizes == layout;
     stacked.vertex.push_back(takes_part ? next_vertex++ : -1);
     if (!takes_part) continue;
     if (last == nullptr || *last != topic.robot) set.robots.emplace_back();

@@ -331,6 +331,12 @@ std::vector<Bytes> encodePicture(std::span<const uint8_t> rgb, const PictureSize
   return {};
 }
 
+bool isFinest(std::span<const Bytes> layers) {
+  if (layers.size() < 2) return false;
+  Decoder first(layers[0]);
+  return codeHeader(first, {}).quality <= kFinest;
+}
+
 std::vector<uint8_t> decodePicture(std::span<const Bytes> layers) {
   if (layers.empty()) throw std::invalid_argument("a picture has at least one layer");
   Decoder first(layers[0]);

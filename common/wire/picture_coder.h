@@ -29,6 +29,10 @@ struct PictureSizes {
 /// @throws std::invalid_argument when there are not so many, or when a size is below 64.
 std::vector<Bytes> encodePicture(std::span<const uint8_t> rgb, const PictureSizes& sizes = {});
 
+/// True when these layers are a whole picture, as fine as encodePicture() makes any: more bytes would show
+/// nothing more.
+bool isFinest(std::span<const Bytes> layers);
+
 /// The picture that these layers, from the first on, show; more than two are not looked at. Any bytes are
 /// some picture: what is hostile gives wrong pixels, in the same time and memory.
 /// @throws std::invalid_argument when there is no layer.

@@ -4,24 +4,39 @@
 #include <algorithm>
 #include <tuple>
 
-#include "shoal/wire/picture_coder.h"
+#include "shoal/mapping/held_pictures.h"
 
 namespace shoal::wire {
+
+namespace {
+
+std::vector<mapping::Piece> piecesOf(const mapping::ExamplePicture& example, int32_t number,
+                                     std::vector<Bytes> layers, world::RobotId robot, int32_t epoch) {
+  std::vector<mapping::Piece> pieces;
+  for (Bytes& layer : layers) {
+    pieces.push_back({.key = {robot, mapping::PieceKind::kPicture, {world::number(example.topic), number, 0}},
+                      .version = {epoch, example.observation},
+                      .part = static_cast<int32_t>(pieces.size()),
+                      .num_parts = static_cast<int32_t>(layers.size()),
+                      .content = mapping::PicturePart{example.cell, example.seen, std::move(layer)}});
+  }
+  return pieces;
+}
+
+}  // namespace
 
 std::vector<mapping::Piece> picturePieces(const mapping::ExamplePicture& example, world::RobotId robot,
                                           int32_t epoch) {
   std::vector<Bytes> layers = {{}};
   if (!example.rgb.empty()) layers = encodePicture(example.rgb);
-  std::vector<mapping::Piece> pieces;
-  for (Bytes& layer : layers) {
-    pieces.push_back(
-        {.key = {robot, mapping::PieceKind::kPicture, {number(example.topic), example.number, 0}},
-         .version = {epoch, example.observation},
-         .part = static_cast<int32_t>(pieces.size()),
-         .num_parts = static_cast<int32_t>(layers.size()),
-         .content = mapping::PicturePart{example.cell, example.seen, std::move(layer)}});
-  }
-  return pieces;
+  return piecesOf(example, example.number, std::move(layers), robot, epoch);
+}
+
+std::vector<mapping::Piece> sharperPieces(const mapping::ExamplePicture& example, world::RobotId robot,
+                                          int32_t epoch) {
+  if (example.rgb.empty()) return {};
+  return piecesOf(example, example.number + mapping::kSharperBy, encodePicture(example.rgb, kSharperSizes),
+                  robot, epoch);
 }
 
 std::vector<mapping::Piece> PictureChanges::update(const mapping::LocalBelief& belief) {

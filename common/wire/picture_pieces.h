@@ -7,6 +7,8 @@
 
 #include "shoal/mapping/local_belief.h"
 #include "shoal/mapping/piece.h"
+#include "shoal/wire/limits.h"
+#include "shoal/wire/picture_coder.h"
 
 namespace shoal::wire {
 
@@ -14,6 +16,14 @@ namespace shoal::wire {
 /// observation at which it became the example: a function of the example alone.
 std::vector<mapping::Piece> picturePieces(const mapping::ExamplePicture& example, world::RobotId robot,
                                           int32_t epoch);
+
+/// The same example sharper, under a number of its own: mapping::kSharperBy. Of the same version, and a
+/// function of the example alone too; nothing for an example that is no more. Cost: as encodePicture().
+std::vector<mapping::Piece> sharperPieces(const mapping::ExamplePicture& example, world::RobotId robot,
+                                          int32_t epoch);
+
+/// The most that the layers of a sharper picture take, bytes.
+inline constexpr PictureSizes kSharperSizes = {kMaxLayerBytes, kMaxLayerBytes};
 
 /// Turns a robot's successive examples into what is new to say, as mapping::BeliefChanges does for the rest.
 class PictureChanges {

@@ -20,8 +20,10 @@
 #include "shoal/comms/window_meter.h"
 #include "shoal/mapping/belief_pieces.h"
 #include "shoal/mapping/fusion.h"
+#include "shoal/mapping/held_pictures.h"
 #include "shoal/random.h"
 #include "shoal/wire/message_kind.h"
+#include "shoal/wire/picture_pieces.h"
 #include "shoal/wire/piece_codec.h"
 #include "shoal/wire/repair_codec.h"
 
@@ -91,6 +93,15 @@ class Party {
     }
   }
 
+  // The robot shows what its topic 2 looks like, and sharper when it is asked to.
+  void show() {
+    for (const mapping::Piece& layer : wire::picturePieces(example_, robot_, 0)) say(layer);
+  }
+
+  void ask(const mapping::PieceKey& key, const world::Version& version) {
+    for (const int32_t part : {0, 1}) repair_.ask(key, part, version);
+  }
+
   void speakUntil(int64_t to_us) {
     while (now_us_ < to_us) {
       const int64_t repair_due = repair_.pump(now_us_);
@@ -138,6 +149,11 @@ class Party {
     fusion_node::RepairOptions options{name_, kMission, budget_, {}, fuses_, {}};
     if (!isRobot()) return options;
     options.own_share = number(robot_);
+    options.make_wanted = [this](uint64_t key) {
+      const auto layers = wire::sharperPieces(example_, robot_, 0);
+      for (const mapping::Piece& layer : layers)
+        if (fusion_node::nameOf(layer.key, layer.part).second == key) say(layer);
+    };
     options.is_unsaid = [this](const mapping::Piece& piece) {
       return piece.key.robot == robot_ && sender_.queue().isWaiting(queueKey(piece));
     };
@@ -159,6 +175,19 @@ class Party {
     return {comms::channelName(name_, "HEARTBEAT"), wire::encode(h)};
   }
 
+  void say(const mapping::Piece& layer) {
+    said_.apply(layer);
+    state_.apply(layer);
+    sender_.offer(comms::TrafficClass::kPictures, queueKey(layer),
+                  {comms::channelName(name_, "PICTURE"), wire::encode(layer, kMission, {})});
+  }
+
+  mapping::ExamplePicture example_{.topic = world::TopicId{2},
+                                   .number = 1,
+                                   .observation = 5,
+                                   .cell = {3, 4, 0},
+                                   .seen = {2 * kSecondUs},
+                                   .rgb = std::vector<uint8_t>(wire::kPictureBytes, 90)};
   std::string name_;
   world::RobotId robot_;
   bool fuses_;
@@ -310,6 +339,34 @@ TEST(LossyLinkTest, SixteenNodesHealWhateverIsLost) {
   run("16 nodes, loss 30 %, double, disorder", scene, 300);
   scene.network.loss = 0.5;
   run("16 nodes, loss 50 %, double, disorder", scene, 600);
+}
+
+// Nobody holds what is asked for until the robot makes it; then it is state like any other, on every node.
+TEST(LossyLinkTest, WhoAsksForASharperPictureGetsItAndSoDoAllOthers) {
+  Scene scene;
+  scene.listeners = {"OPERATOR", "SHORE"};
+  scene.network = {.seed = 5, .loss = 0.3, .duplication = 0.1, .reordering = 0.2};
+  Meeting meeting(scene);
+  Party& robot = meeting.find("R01");
+  const auto sharpened = [&](const std::string& node) {
+    const auto held = mapping::heldPictures(meeting.find(node).state().beliefs());
+    return held.size() == 1 && held[0].sharpened;
+  };
+  robot.show();
+  int second = meeting.run(300).settled_s + 1;
+  ASSERT_FALSE(sharpened("OPERATOR"));
+  EXPECT_FALSE(mapping::heldPictures(meeting.find("SHORE").state().beliefs())[0].sharpened);
+  const mapping::PieceKey sharper{
+      world::RobotId{1}, mapping::PieceKind::kPicture, {2, 1 + mapping::kSharperBy, 0}};
+  const uint64_t before = robot.said().digest();
+  meeting.find("OPERATOR").ask(sharper, {0, 5});
+  const int until = second + 200;
+  while (second < until && !(sharpened("OPERATOR") && sharpened("SHORE"))) meeting.turn(second++);
+  EXPECT_TRUE(sharpened("OPERATOR"));
+  EXPECT_TRUE(sharpened("SHORE"));
+  EXPECT_NE(robot.said().digest(), before);
+  EXPECT_EQ(meeting.find("OPERATOR").state().beliefs().digest(),
+            meeting.find("SHORE").state().beliefs().digest());
 }
 
 TEST(LossyLinkTest, APartitionHeals) {

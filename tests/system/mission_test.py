@@ -126,6 +126,34 @@ class Mission(unittest.TestCase):
                 f"robots/R0{r}/{name}" for r in range(3) for name in ("map.csv", "topics.json", "poses.txt")]:
             self.assertEqual(read(os.path.join(self.a, path)), read(os.path.join(b, path)), path)
 
+    def test_names_go_along_to_the_next_mission(self):
+        a, b = os.path.join(self.top, "named"), os.path.join(self.top, "library")
+        shutil.copytree(self.a, a)
+        file = os.path.join(self.top, "reef.library")
+        self.assertIn("no label has a name", run(CONSOLE, "library", "save", "--run", a, "--out", file, expect=1).stderr)
+        rows = ask("labels", "--run", a)["labels"]
+        self.assertNotIn("library", rows[0])
+        largest = sorted(rows, key=lambda row: -row["cells"])[:2]
+        for row, name in zip(largest, ("brain coral", "sand")):
+            run(CONSOLE, "name", str(row["label"]), name, "--run", a)
+        saved = ask("library", "save", "--run", a, "--out", file)
+        check_schema("library", saved)
+        self.assertEqual([t["name"] for t in saved["topics"]], ["brain coral", "sand"])
+        self.assertEqual(ask("library", "show", file), saved)
+        launch(b, "--library", file, "--record")
+        rows = ask("labels", "--run", b)
+        check_schema("labels", rows)
+        names = {row["name"]: row["library"] for row in rows["labels"]}
+        for name in ("brain coral", "sand"):
+            self.assertIn(name, names.get(name, []), rows)
+        self.assertIn([], names.values(), "nothing is new")
+        self.assertEqual(ask("library", "show", os.path.join(b, "library.json"))["digest"], saved["digest"])
+        self.assertIn("* ", run(CONSOLE, "labels", "--run", b).stdout)
+        again = os.path.join(self.top, "library_again")
+        run(CONSOLE, "replay", os.path.join(b, "mission.lcmlog"), "--out", again)
+        for path in ("global_map.csv", "labels.csv"):
+            self.assertEqual(read(os.path.join(again, path)), read(os.path.join(b, path)), path)
+
     def test_a_bad_link_gives_the_same_bytes(self):
         link = os.path.join(self.top, "bay.json")
         with open(link, "w", encoding="utf-8") as file:
@@ -507,6 +535,63 @@ class ByHand(unittest.TestCase):
             self.assertEqual(read(os.path.join(out, "robots", f"R0{r}", "global_map.csv")), of_operator, r)
             self.assertEqual(read(os.path.join(out, "robots", f"R0{r}", "labels.csv")), read(os.path.join(out, "labels.csv")))
 
+    def test_a_sharper_picture_is_asked_for_after_its_price(self):
+        import struct
+        import zlib
+        world, side, state, url = os.path.join(self.top, "world"), 300, os.path.join(self.top, "state"), "udpm://239.255.76.67:7816?ttl=0"
+        os.mkdir(world)
+        rows, noise = b"", 1
+        for _ in range(side):  # rough: such pictures take more bytes than are sent unasked
+            row = bytearray()
+            for _ in range(side):
+                noise = (noise * 1664525 + 1013904223) % 2**32
+                row += bytes([80 + (noise >> 24) // 3] * 3)
+            rows += b"\0" + bytes(row)
+        chunks = [(b"IHDR", struct.pack(">IIBBBBB", side, side, 8, 2, 0, 0, 0)), (b"IDAT", zlib.compress(rows)), (b"IEND", b"")]
+        with open(os.path.join(world, "world.png"), "wb") as file:
+            file.write(b"\x89PNG\r\n\x1a\n")
+            for kind, data in chunks:
+                file.write(struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data)))
+        with open(os.path.join(world, "world.json"), "w", encoding="utf-8") as file:
+            json.dump({"name": "rough", "metres_per_pixel": 0.1, "size_px": [side, side], "image": "world.png"}, file)
+        link = ["--lcm-url", url, "--rate", "max", "--budget", "2000"]
+        self.start("fusion_node", *link, "--state", state)
+        self.start("robot_agent", "--robot", "R00", "--robots", "1", "--source", world, "--observations", "6", "--linger", *link,
+                   "--out", os.path.join(self.top, "out"), "--checkpoint", self.top)
+
+        def pictures():
+            try:
+                status = ask("status", "--node", state)["nodes"]
+                if not [n for n in status if n["name"] == "R00" and n["phase"] == "landed" and n["heard_whole"]]:
+                    return []
+                return [p for row in ask("labels", "--node", state)["labels"] for p in row["pictures"]]
+            except AssertionError:
+                return []
+
+        self.wait_for(pictures)
+        example = ("ask", "R00", "example", str(pictures()[0]["topic"]), "--node", state)
+        price = ask(*example, "--dry-run")
+        check_schema("ask", price)
+        self.assertEqual(price["state"], "not sharp")
+        self.assertGreater(price["seconds"], 0)
+        self.assertEqual(ask(*example, "--dry-run")["state"], "not sharp", "asking for the price asks for nothing else")
+        picture = os.path.join(self.top, "sharp.png")
+        sharp = ask(*example, "--wait", "60", "--out", picture)
+        check_schema("ask", sharp)
+        self.assertEqual((sharp["state"], sharp["picture"]["sharpened"]), ("sharp", True))
+        layers = [sum(len(layer) // 2 for layer in answer["picture"]["layers"]) for answer in (price, sharp)]
+        self.assertGreater(layers[1], layers[0])
+        self.assertLess(layers[1], price["bytes"]["answer"])
+        self.assertEqual(read(picture)[:8], b"\x89PNG\r\n\x1a\n")
+        self.assertIn("nothing to pay", run(CONSOLE, *example, "--dry-run").stdout)
+        self.assertIn("held are those of topics", run(CONSOLE, "ask", "R00", "example", "9876", "--node", state, expect=1).stderr)
+        self.assertIn("ask R03 example 7", run(CONSOLE, "ask", "R00", "picture", "7", "--node", state, expect=2).stderr)
+        self.started[1].kill()  # what it has said on request is in its checkpoint: it comes back whole
+        self.started[1].wait()
+        self.start("robot_agent", "--robot", "R00", "--robots", "1", "--source", world, "--observations", "6", *link, "--start-s", "60",
+                   "--out", os.path.join(self.top, "out"), "--checkpoint", self.top)
+        self.assertEqual(self.started[-1].wait(timeout=60), 0)
+
     def test_spy_and_doctor_see_the_mission(self):
         url = "udpm://239.255.76.67:7814?ttl=0"
         silent = subprocess.run([CONSOLE, "spy", "--once", "--seconds", "0.3", "--lcm-url", url], capture_output=True, text=True,
@@ -528,11 +613,27 @@ class ByHand(unittest.TestCase):
         self.assertEqual(alone.returncode, 1)
         self.assertIn("type: sudo ip route add 224.0.0.0/4 dev lo", alone.stdout)
 
-    def test_a_robot_leaves_when_it_was_heard(self):
-        url = ["--lcm-url", "udpm://239.255.76.67:7812?ttl=0", "--rate", "max"]
-        self.start("fusion_node", *url, "--state", os.path.join(self.top, "state"))
+    def test_a_robot_leaves_when_it_was_heard_and_a_killed_node_remembers_it(self):
+        url = ["--lcm-url", "udpm://239.255.76.67:7812?ttl=0", "--rate", "max", "--mission", "77"]
+        state = os.path.join(self.top, "state")
+        node = self.start("fusion_node", *url, "--state", state)
         robot = self.start("robot_agent", "--robot", "R00", "--source", "reef:tuning", "--observations", "3", *url)
         self.assertEqual(robot.wait(timeout=120), 0)
+        label = ask("labels", "--node", state)["labels"][0]["label"]
+        run(CONSOLE, "name", str(label), "sand", "--node", state)
+        before = {q: ask(q, "--node", state) for q in ("labels", "events", "edits")}
+        difference = ask("diff", "0", "1000", "--node", state)
+        check_schema("diff", difference)
+        self.assertEqual(difference["total"]["appeared"], sum(row["cells"] for row in before["labels"]["labels"]))
+        node.kill()
+        node.wait()
+        with_file = ask("labels", "--log", os.path.join(state, "mission-77.sqlite"))  # nobody runs
+        self.assertEqual([row["name"] for row in with_file["labels"]], [row["name"] for row in before["labels"]["labels"]])
+        self.start("fusion_node", *url, "--state", state)
+        self.wait_for(lambda: subprocess.run([CONSOLE, "status", "--node", state], capture_output=True, timeout=60).returncode == 0)
+        for question, said in before.items():
+            self.assertEqual(ask(question, "--node", state), said, question)
+        self.assertEqual(ask("diff", "0", "1000", "--node", state), difference)
 
     def test_another_mission_on_the_url_is_refused(self):
         url = "udpm://239.255.76.67:7813?ttl=0"

@@ -136,7 +136,7 @@ TEST_F(QuestionsTest, WhatIsWrongIsNamed) {
   expectExit(2, "area" + run(), "label");
   expectExit(2, "area 4", "[--node,--run,--log] is required");
   expectExit(2, "diff 30 10" + log(), "the earlier to the later");
-  expectExit(1, "diff 10 30 --node " + folder_, "a running node keeps no history");
+  expectExit(1, "diff 10 30 --node " + folder_, "holds no mission that a node has heard");
   expectExit(2, "status --watch" + run(), "a finished run does not change");
   expectExit(2, "export --format gif --out x" + run(), "gif");
   expectExit(2, "serve", "[--node,--run,--log] is required");

@@ -72,7 +72,9 @@ robot reef-b R01
 first_r01=$started
 wait_for 120 "flies" "$top/R01.log"
 for _ in $(seq 120); do
-  [[ -s $top/fusion/heard.lcmlog && -e $top/R01/R01.checkpoint ]] && break
+  python3 -c 'import glob, sqlite3, sys
+sys.exit(not any(sqlite3.connect(f).execute("SELECT count(*) FROM heard WHERE channel NOT LIKE ?", ("%HEARTBEAT",)).fetchone()[0]
+                 for f in glob.glob(sys.argv[1])))' "$top/fusion/mission-*.sqlite" && [[ -e $top/R01/R01.checkpoint ]] && break
   sleep 1
 done
 kill -9 "$first_fusion" "$first_r01"

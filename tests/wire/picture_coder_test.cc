@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "shoal/random.h"
+#include "shoal/wire/picture_message.h"
 #include "shoal/wire/picture_pieces.h"
 #include "shoal/wire/wavelet.h"
 
@@ -40,6 +41,14 @@ Pixels blots(uint64_t seed) {
       if (std::hypot(x - b[0], y - b[1]) < b[2]) value += b[3 + static_cast<size_t>(c)];
     return value;
   });
+}
+
+// Light and dark from pixel to pixel, as gravel is.
+Pixels rough(uint64_t seed) {
+  Random random(seed);
+  std::vector<int> light;
+  for (int i = 0; i < kPictureEdge * kPictureEdge; ++i) light.push_back(static_cast<int>(random.below(80)));
+  return painted([&](int x, int y, int) { return 80 + light[static_cast<size_t>(y * kPictureEdge + x)]; });
 }
 
 Pixels noise(uint64_t seed) {
@@ -161,13 +170,46 @@ TEST(PictureChangesTest, FirstLayersOfTheMostTypicalComeFirstAndNothingIsSaidTwi
   EXPECT_TRUE(changes.update(belief).empty());
 
   belief.examples[1] = example(0, 1, 11, {});  // no more
-  belief.examples[2] = example(3, 0, 12, blots(4));
+  belief.examples[2] = example(3, 0, 12, rough(4));
   const auto changed = changes.update(belief);
   ASSERT_EQ(changed.size(), 3u);
   EXPECT_EQ(changed[0].key.index, (std::array<int32_t, 3>{0, 1, 0}));
   EXPECT_TRUE(std::get<mapping::PicturePart>(changed[0].content).layer.empty());
   EXPECT_EQ(changed[0].version, (world::Version{2, 11}));
   EXPECT_EQ(changed[1].version, (world::Version{2, 12}));
+}
+
+TEST(SharperPiecesTest, ShowTheSameExampleSharperWithinTheirSizes) {
+  const mapping::ExamplePicture example{.topic = world::TopicId{3},
+                                        .number = 1,
+                                        .observation = 7,
+                                        .cell = {1, 2, 0},
+                                        .seen = {5},
+                                        .rgb = rough(4)};
+  const auto usual = picturePieces(example, world::RobotId{2}, 0);
+  const auto sharper = sharperPieces(example, world::RobotId{2}, 0);
+  ASSERT_EQ(sharper.size(), 2u);
+  std::vector<Bytes> usual_layers, sharper_layers;
+  for (const auto& piece : usual) usual_layers.push_back(std::get<mapping::PicturePart>(piece.content).layer);
+  for (const auto& piece : sharper) {
+    EXPECT_EQ(piece.key.index, (std::array<int32_t, 3>{3, 5, 0}));
+    EXPECT_EQ(piece.version, usual[0].version);
+    EXPECT_EQ(faultOf(std::get<mapping::PicturePart>(piece.content), piece), "");
+    sharper_layers.push_back(std::get<mapping::PicturePart>(piece.content).layer);
+  }
+  EXPECT_LE(sharper_layers[0].size(), kSharperSizes.first);
+  EXPECT_LE(sharper_layers[1].size(), kSharperSizes.second);
+  const double before = psnr(example.rgb, decodePicture(usual_layers));
+  const double after = psnr(example.rgb, decodePicture(sharper_layers));
+  RecordProperty("psnr_db_before", static_cast<int>(before * 100));
+  RecordProperty("psnr_db_after", static_cast<int>(after * 100));
+  EXPECT_GT(after, before + 3) << before;
+  EXPECT_FALSE(isFinest(usual_layers));
+  EXPECT_FALSE(isFinest(std::span(usual_layers).first(1)));
+  EXPECT_TRUE(isFinest(encodePicture(Pixels(kPictureBytes, 90))));
+  mapping::ExamplePicture gone = example;
+  gone.rgb.clear();
+  EXPECT_TRUE(sharperPieces(gone, world::RobotId{2}, 0).empty());
 }
 
 }  // namespace

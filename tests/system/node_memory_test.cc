@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a node keeps of a mission, and that no kill takes back what it has acknowledged.
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdint>
+#include <filesystem>
+#include <stdexcept>
+
+#include <gtest/gtest.h>
+
+#include "fusion_node/node_memory.h"
+#include "shoal/mapping/atomic_file.h"
+#include "shoal/random.h"
+#include "shoal/wire/piece_codec.h"
+
+namespace shoal::fusion_node {
+namespace {
+
+constexpr int32_t kMission = 5;
+
+comms::Packet topic(int32_t id) {
+  const mapping::Piece piece{.key = {world::RobotId{1}, mapping::PieceKind::kTopic, {id, 0, 0}},
+                             .version = {0, 3},
+                             .content = mapping::TopicPart{{0}, 7, {10}, {{2, 7}}}};
+  return {"SHOAL_R01_TOPICS", wire::encode(piece, kMission, {})};
+}
+
+comms::Packet heartbeat(int64_t second) {
+  wire::Heartbeat h;
+  h.mission = kMission;
+  h.time = {second * 1'000'000};
+  h.phase = wire::Phase::kNode;
+  return {"SHOAL_OPERATOR_HEARTBEAT", wire::encode(h)};
+}
+
+class NodeMemoryTest : public testing::Test {
+ protected:
+  NodeMemoryTest() : dir_(testing::TempDir() + "shoal_m" + std::to_string(::getpid())) {}
+  ~NodeMemoryTest() override { std::filesystem::remove_all(dir_); }
+
+  void hear(NodeMemory& memory, MissionState& state, const comms::Packet& packet) {
+    memory.keep(packet, state.hear(packet, stats_));
+  }
+  size_t held() {
+    MissionState state(kMission, {});
+    NodeMemory(dir_, "OPERATOR", kMission).recall(state);
+    return state.beliefs().numPieces();
+  }
+  std::string dir_;
+  comms::Stats stats_;
+};
+
+TEST_F(NodeMemoryTest, StateClockAndEventsComeBack) {
+  MissionState before(kMission, {});
+  {
+    NodeMemory memory(dir_, "OPERATOR", kMission);
+    EXPECT_FALSE(memory.recall(before));
+    for (int i = 0; i < 20; ++i) hear(memory, before, topic(i % 10));
+    hear(memory, before, heartbeat(1));
+    hear(memory, before, heartbeat(2));  // too soon after the last to be kept
+    hear(memory, before, heartbeat(40));
+    before.passTime(100);  // it is lost
+    hear(memory, before, topic(11));
+    memory.commit(before);
+  }
+  MissionState after(kMission, {});
+  NodeMemory memory(dir_, "OPERATOR", kMission);
+  const auto clock = memory.recall(after);
+  ASSERT_TRUE(clock);
+  EXPECT_EQ(clock->first, 40'000'000);
+  EXPECT_EQ(after.beliefs().digest(), before.beliefs().digest());
+  ASSERT_EQ(after.events().size(), 2u);
+  EXPECT_EQ(after.events()[1].kind, "lost");
+  EXPECT_EQ(after.events(), before.events());
+  size_t kept = 0;
+  for (MissionFileReader file(missionFilePath(dir_, kMission)); file.next();) ++kept;
+  EXPECT_EQ(kept, 13u);  // eleven topics, each once, and two heartbeats
+}
+
+TEST_F(NodeMemoryTest, EventsAreKeptOnceHoweverOftenItIsStartedAgain) {
+  for (int life = 0; life < 3; ++life) {
+    MissionState state(kMission, {});
+    NodeMemory memory(dir_, "OPERATOR", kMission);
+    memory.recall(state);
+    hear(memory, state, heartbeat(1 + 20 * life));
+    memory.commit(state);
+    EXPECT_EQ(state.events().size(), 1u) << life;  // joined
+  }
+}
+
+TEST_F(NodeMemoryTest, WhatWasNotCommittedIsGoneAndTheRestIsThere) {
+  MissionState state(kMission, {});
+  {
+    NodeMemory memory(dir_, "OPERATOR", kMission);
+    hear(memory, state, topic(1));
+    memory.commit(state);
+    hear(memory, state, topic(2));
+  }
+  EXPECT_EQ(held(), 1u);
+}
+
+TEST_F(NodeMemoryTest, OneFileAMission) {
+  MissionState state(kMission, {});
+  NodeMemory memory(dir_, "OPERATOR", kMission);
+  hear(memory, state, topic(1));
+  memory.commit(state);
+  MissionState other(6, {});
+  NodeMemory another(dir_, "OPERATOR", 6);
+  another.recall(other);
+  EXPECT_EQ(other.beliefs().numPieces(), 0u);
+  EXPECT_THROW(MissionFile(missionFilePath(dir_, kMission), "OPERATOR", 6), std::runtime_error);
+}
+
+TEST_F(NodeMemoryTest, WhatIsNoSuchFileIsRefusedByName) {
+  std::filesystem::create_directories(dir_);
+  const std::string path = dir_ + "/mission-5.sqlite";
+  for (const std::string& bytes : {std::string("nonsense, but long enough to be looked at as a file"),
+                                   "SQLite format 3" + std::string(200, '\0')}) {
+    mapping::writeFileAtomically(path, bytes);
+    try {
+      MissionFile(path, "OPERATOR", kMission);
+      ADD_FAILURE() << "was taken";
+    } catch (const std::runtime_error& error) {
+      EXPECT_NE(std::string(error.what()).find(path), std::string::npos) << error.what();
+    }
+  }
+}
+
+// A child keeps topics and says through a pipe how many are safe; it is killed at a random moment, again and
+// again on the same file.
+TEST_F(NodeMemoryTest, KilledAtAnyMomentNothingAcknowledgedIsLost) {
+  constexpr int kLives = 25, kMostBatches = 110;  // fewer than 10000 topics in all
+  Random random(17);
+  int32_t acknowledged = 0, killed_at_work = 0;
+  for (int life = 0; life < kLives; ++life) {
+    int ends[2];
+    ASSERT_EQ(::pipe(ends), 0);
+    const pid_t child = ::fork();
+    if (child == 0) {
+      ::close(ends[0]);
+      MissionState state(kMission, {});
+      NodeMemory memory(dir_, "OPERATOR", kMission);
+      memory.recall(state);
+      auto next = static_cast<int32_t>(state.beliefs().numPieces());
+      for (const int32_t end = next + 3 * kMostBatches; next < end; next += 3) {
+        for (int i = 0; i < 3; ++i) {
+          const comms::Packet packet = topic(next + i);
+          comms::Stats stats;
+          memory.keep(packet, state.hear(packet, stats));
+        }
+        memory.commit(state);
+        const int32_t safe = next + 3;
+        if (::write(ends[1], &safe, sizeof safe) != sizeof safe) ::_exit(1);
+      }
+      while (true) ::pause();  // far ahead of who listens
+    }
+    ::close(ends[1]);
+    // After so many acknowledgements more, and somewhat later.
+    const int32_t until = acknowledged + 3 * static_cast<int32_t>(1 + random.below(40));
+    int32_t safe = 0;
+    while (safe < until && ::read(ends[0], &safe, sizeof safe) == sizeof safe) acknowledged = safe;
+    ::usleep(static_cast<useconds_t>(random.below(2000)));
+    ::kill(child, SIGKILL);
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    killed_at_work += WIFSIGNALED(status) ? 1 : 0;
+    while (::read(ends[0], &safe, sizeof safe) == sizeof safe) acknowledged = safe;
+    ::close(ends[0]);
+    const auto there = static_cast<int32_t>(held());
+    ASSERT_GE(there, acknowledged) << "life " << life;
+    ASSERT_EQ(there % 3, 0) << "a batch was torn in life " << life;
+    acknowledged = there;
+  }
+  EXPECT_EQ(killed_at_work, kLives);
+  EXPECT_GT(acknowledged, 3 * kLives);
+}
+
+}  // namespace
+}  // namespace shoal::fusion_node
