@@ -18,11 +18,13 @@ std::vector<world::WordCount> quantize(const std::vector<world::WordCount>& coun
   double squares = 0;  // of integers, and below 2^53 for any count of words a robot can see: exact
   for (const world::WordCount& w : counts) squares += static_cast<double>(w.count) * w.count;
   // sqrt is correctly rounded by IEEE 754, so every machine gets the same integers.
-  const double step = std::max(1.0, std::sqrt(squares) / (detail == Detail::kFine ? 1000.0 : 100.0));
+  const double norm = std::sqrt(squares);
+  const double step = std::max(1.0, norm / 1000.0);
+  const double unit = detail == Detail::kFine ? 1.0 : std::max(1.0, std::floor(norm / step / 100.0 + 0.5));
   std::vector<world::WordCount> quantized;
   for (const world::WordCount& w : counts) {
-    const auto level = static_cast<int32_t>(std::floor(w.count / step + 0.5));
-    if (level > 0) quantized.push_back({w.word, level});
+    const double level = std::floor(w.count / (step * unit) + 0.5);
+    if (level > 0) quantized.push_back({w.word, static_cast<int32_t>(level * unit)});
   }
   return quantized;
 }

@@ -65,10 +65,11 @@ struct LocalBelief {
   Detail detail = Detail::kFine;              ///< of what it tells the others
 };
 
-/// A topic's counts as integers fit to travel: divided by a thousandth of their L2 norm (a hundredth when
-/// coarse), when that is above 1, and rounded half up; words that round to 0 are left out. One step for all
-/// words, so that the word groups keep their weights. Of n words in all the cosine to the exact counts stays
-/// above 1 - n / 8,000,000 (1 - n / 80,000).
+/// A topic's counts as integers fit to travel: divided by a thousandth of their L2 norm, when that is above
+/// 1, and rounded half up; words that round to 0 are left out. Coarse ones are rounded to multiples of a
+/// hundredth of their norm, in the same scale. One step for all words, so that the word groups keep their
+/// weights. Of n words in all the cosine to the exact counts stays above 1 - n / 8,000,000, coarse above
+/// 1 - n / 80,000.
 std::vector<world::WordCount> quantize(const std::vector<world::WordCount>& counts,
                                        Detail detail = Detail::kFine);
 

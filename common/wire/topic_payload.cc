@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <bit>
+#include <numeric>
 
 #include "shoal/demand.h"
 #include "shoal/wire/limits.h"
@@ -13,6 +14,14 @@ namespace {
 using mapping::TopicPart;
 
 constexpr size_t kGroupClasses = 4;  // the first three groups and all others learn apart
+constexpr int64_t kMaxCount = 0x7fffffff;
+
+// The greatest common divisor of all counts; of none 1.
+int64_t unitOf(const TopicPart& topic) {
+  int64_t unit = 0;
+  for (const world::WordCount& w : topic.words) unit = std::gcd(unit, int64_t{w.count});
+  return std::max<int64_t>(unit, 1);
+}
 
 template <typename Coder>
 bool codeTopic(Coder& coder, TopicPart& topic, int32_t num_words) {
@@ -27,6 +36,9 @@ bool codeTopic(Coder& coder, TopicPart& topic, int32_t num_words) {
     vocabulary += size;
   }
   if (vocabulary > kMaxVocabulary || num_words > vocabulary) return false;
+
+  const auto unit = static_cast<int64_t>(codeWide(coder, static_cast<uint64_t>(unitOf(topic))));
+  if (unit < 1 || unit > kMaxCount) return false;
 
   // Gaps between words, and counts in the light of the count before, per class of group.
   std::array<SmallNumber, kGroupClasses> gaps;
@@ -48,12 +60,12 @@ bool codeTopic(Coder& coder, TopicPart& topic, int32_t num_words) {
     entry.word = static_cast<int32_t>(word);
     next = word + 1;
     const uint32_t count =
-        counts[groupOf(word)][last_count].code(coder, static_cast<uint32_t>(entry.count - 1));
-    if (count >= 0x7fffffffu) return false;
-    entry.count = static_cast<int32_t>(count) + 1;
+        counts[groupOf(word)][last_count].code(coder, static_cast<uint32_t>(entry.count / unit - 1));
+    if (count >= kMaxCount / unit) return false;
+    entry.count = static_cast<int32_t>((int64_t{count} + 1) * unit);
     last_count = std::min<size_t>(static_cast<size_t>(std::bit_width(count)), 3);
   }
-  return !coder.overrun();
+  return !coder.overrun() && unitOf(topic) == unit;
 }
 
 }  // namespace

@@ -31,11 +31,13 @@ TEST(QuantizeTest, RoundsToAThousandthOfTheNorm) {
 }
 
 TEST(QuantizeTest, CoarseRoundsToAHundredth) {
-  // The norm of (300, 400) is 500, the step 5; of (3000, 4000) it is 50.
-  EXPECT_EQ(quantize({{0, 300}, {1, 400}}, Detail::kCoarse),
-            (std::vector<world::WordCount>{{0, 60}, {1, 80}}));
+  // The norm of (300, 400) is 500: multiples of 5. Of (3000, 4000) it is 5000: multiples of 50, told as
+  // fifths.
+  EXPECT_EQ(quantize({{0, 302}, {1, 400}, {2, 2}, {3, 3}}, Detail::kCoarse),
+            (std::vector<world::WordCount>{{0, 300}, {1, 400}, {3, 5}}));
   EXPECT_EQ(quantize({{0, 3000}, {1, 4000}, {2, 24}, {3, 26}}, Detail::kCoarse),
-            (std::vector<world::WordCount>{{0, 60}, {1, 80}, {3, 1}}));
+            (std::vector<world::WordCount>{{0, 600}, {1, 800}, {3, 10}}));
+  EXPECT_EQ(quantize({{0, 3}, {9, 4}}, Detail::kCoarse), quantize({{0, 3}, {9, 4}}));
 }
 
 TEST(QuantizeTest, CoarseCertaintiesAreSevenths) {

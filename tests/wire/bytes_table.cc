@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // shoal_wire_bytes [RUN...]: what maps and topics take on the wire beside what general coders make of them,
-// as the tables of docs/benchmarks.md. A RUN is the folder of a finished mission. With cjxl (libjxl-tools) in
-// the PATH, lossless JPEG XL too. No time is measured: run it anywhere.
-#include <zstd.h>
-
-#include <unistd.h>
+// as the tables of docs/benchmarks.md. A RUN is the folder of a finished mission. With cjxl (libjxl-tools)
+// and draco_encoder (draco) in the PATH, lossless JPEG XL and Draco too.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <ctime>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <span>
 #include <stdexcept>
@@ -21,10 +16,12 @@
 #include <nlohmann/json.hpp>
 
 #include "label_field.h"
+#include "other_coders.h"
 #include "shoal/mapping/atomic_file.h"
 #include "shoal/mapping/belief_files.h"
 #include "shoal/mapping/belief_pieces.h"
 #include "shoal/mapping/map_files.h"
+#include "shoal/random.h"
 #include "shoal/wire/cut.h"
 #include "shoal/wire/limits.h"
 #include "shoal/wire/piece_codec.h"
@@ -83,47 +80,6 @@ Cost costOfBricks(const std::vector<mapping::BrickCell>& cells) {
   Cost cost;
   for (const wire::Bytes& message : messagesOf(piecesOf(cells))) add(cost, message.size(), kFixedBricks);
   return cost;
-}
-
-// One byte a column (x, y), from its highest cell; 255 where there is none.
-struct Raster {
-  int width = 0, height = 0;
-  std::vector<uint8_t> pixels;
-};
-
-Raster rasterOf(const std::vector<mapping::BrickCell>& cells) {
-  const auto [x0, x1] = std::ranges::minmax(cells, {}, [](const auto& c) { return c.cell.x; });
-  const auto [y0, y1] = std::ranges::minmax(cells, {}, [](const auto& c) { return c.cell.y; });
-  Raster raster{x1.cell.x - x0.cell.x + 1, y1.cell.y - y0.cell.y + 1, {}};
-  raster.pixels.assign(static_cast<size_t>(raster.width) * static_cast<size_t>(raster.height), 255);
-  for (const auto& c : cells)  // ascending: the highest of a column last
-    raster.pixels[static_cast<size_t>((c.cell.y - y0.cell.y) * raster.width + c.cell.x - x0.cell.x)] =
-        static_cast<uint8_t>(number(c.topic));
-  return raster;
-}
-
-size_t zstd19(const std::vector<uint8_t>& bytes) {
-  std::vector<uint8_t> out(ZSTD_compressBound(bytes.size()));
-  const size_t size = ZSTD_compress(out.data(), out.size(), bytes.data(), bytes.size(), 19);
-  if (ZSTD_isError(size) != 0) throw std::runtime_error(ZSTD_getErrorName(size));
-  return size;
-}
-
-// Bytes of the losslessly coded picture; 0 without cjxl.
-size_t jpegXl(const Raster& raster) {
-  const fs::path folder = fs::temp_directory_path() / ("shoal_wire_bytes_" + std::to_string(getpid()));
-  fs::create_directories(folder);
-  const std::string in = (folder / "map.pgm").string(), out = (folder / "map.jxl").string();
-  {
-    std::ofstream file(in, std::ios::binary);
-    file << "P5\n" << raster.width << ' ' << raster.height << "\n255\n";
-    file.write(reinterpret_cast<const char*>(raster.pixels.data()),
-               static_cast<std::streamsize>(raster.pixels.size()));
-  }
-  const int status = std::system(("cjxl " + in + " " + out + " -d 0 -e 9 >/dev/null 2>&1").c_str());
-  const size_t size = status == 0 ? fs::file_size(out) : 0;
-  fs::remove_all(folder);
-  return size;
 }
 
 // Ideal code length, bytes, of numbers whose distribution is learned on the way: a number seen c times among
@@ -187,10 +143,47 @@ NamedMap fusedMapOf(const std::string& run) {
   return map;
 }
 
+// The ground under four legs of 60 m, 4 m wide, in cells of 10 cm: waves and a slope, steps filled up so that
+// it is closed, 1.5 % holes; labels as of synthetic(0.03).
+NamedMap legs() {
+  constexpr int kLength = 600, kWidth = 40, kLegs = 4;
+  const auto field = wire::labelField(kLength, 10, 0.03);
+  const auto height = [](int x, int y) {
+    return static_cast<int>(std::lround(6 * std::sin(x * 0.021) + 4 * std::sin(y * 0.05 + x * 0.013) +
+                                        1.5 * std::sin(x * 0.17) + 0.01 * x));
+  };
+  Random random(5);
+  NamedMap map{"surface, 4 x 60 m x 4 m", {}};
+  for (int x = 0; x < kLength; ++x) {
+    for (int leg = 0; leg < kLegs; ++leg) {
+      for (int y = leg * 140; y < leg * 140 + kWidth; ++y) {
+        if (random.uniform() < 0.015) continue;
+        const int top = height(x, y);
+        const int below = std::min({top, height(x + 1, y) + 1, height(x, y + 1) + 1});
+        for (int z = below; z <= top; ++z) {
+          const int label = field[static_cast<size_t>(x * kLength + y)];
+          map.cells.push_back({{x, y, z}, world::TopicId{label}, {}});
+        }
+      }
+    }
+  }
+  return map;
+}
+
+void printSolid(const NamedMap& map) {
+  const Cost cost = costOfBricks(map.cells);
+  const size_t draco = wire::draco(map.cells), octomap = wire::octoMap(map.cells);
+  const auto share = [&](size_t other) {
+    return other == 0 ? 0.0 : static_cast<double>(cost.datagrams) / static_cast<double>(other);
+  };
+  std::printf("| %s | %zu | %zu | %zu | %zu | %zu (%.3f, %.4f) |\n", map.name.c_str(), map.cells.size(),
+              draco, octomap, cost.payload, cost.datagrams, share(draco), share(octomap));
+}
+
 void printLabels(const NamedMap& map) {
   const Cost cost = costOfBricks(map.cells);
-  const Raster raster = rasterOf(map.cells);
-  const size_t zstd = zstd19(raster.pixels), jxl = jpegXl(raster);
+  const wire::Raster raster = wire::rasterOf(map.cells);
+  const size_t zstd = wire::zstd19(raster.pixels), jxl = wire::jpegXl(raster);
   const auto ratio = [](size_t a, size_t b) { return static_cast<double>(a) / static_cast<double>(b); };
   std::printf("| %s | %zu | %zu | %zu | %zu (%.2f) | %zu | %zu (%.2f) |\n", map.name.c_str(),
               map.cells.size(), zstd, jxl, cost.payload, ratio(cost.payload, zstd), cost.count,
@@ -334,6 +327,11 @@ void run(std::span<char*> runs) {
   std::puts("|---|---|---|---|---|---|---|");
   for (const NamedMap& map : fields) printLabels(map);
   for (const char* folder : runs) printLabels(fusedMapOf(folder));
+  std::puts(
+      "\n| solid map | cells | Draco | OctoMap .ot | ours, payloads | ours, all (of Draco, of OctoMap) |");
+  std::puts("|---|---|---|---|---|---|");
+  printSolid(legs());
+  for (const char* folder : runs) printSolid(fusedMapOf(folder));
   if (!runs.empty())
     std::puts(
         "\n| mission | topics | counts > 0 | float32 | adaptive entropy | ours, payloads | ours, all |");

@@ -61,6 +61,8 @@ def _read_topics(m, payload):
         ends.append(sum(sizes))
         require(sizes[-1] > 0 and ends[-1] <= MAX_VOCABULARY, "sizes of word groups", "bad payload")
     require(m["num_words"] <= ends[-1], "more words than the vocabulary has", "bad payload")
+    unit = bits.wide()
+    require(1 <= unit < 2**31, "unit of the counts", "bad payload")
     gaps = [Models() for _ in range(4)]
     counts = [[Models() for _ in range(4)] for _ in range(4)]
     words, follows, last, group = [], 0, 0, 0
@@ -75,12 +77,13 @@ def _read_topics(m, payload):
     for _ in range(m["num_words"]):
         word = follows + bits.small(gaps[group_of(follows)])
         count = bits.small(counts[group_of(word)][last])
-        require(count < 2**31 - 1, "a count", "bad payload")
-        words.append((word, count + 1))
+        require(count < (2**31 - 1) // unit, "a count", "bad payload")
+        words.append((word, (count + 1) * unit))
         follows, last = word + 1, min(count.bit_length(), 3)
     bits.end()
     require(m["created_us"] <= MAX_TIME and m["weight"] <= MAX_TIME, "created or weight")
     require(m["weight"] or not words, "a retired topic has no words")
+    require(unit == (math.gcd(*(count for _, count in words)) or 1), "unit of the counts", "bad payload")
     m["group_sizes"], m["words"] = sizes, words
 
 
