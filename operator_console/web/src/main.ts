@@ -251,9 +251,9 @@ async function inspect(label: number, cell?: HTMLElement): Promise<void> {
 function whyTable(w: Why): HTMLElement {
   const percent = (s: number | null): string => (s === null ? "–" : s.toFixed(2));
   const bar = (s: number | null, color: string): HTMLElement => el("span", { class: "sim" }, el("i", { style: `width:${44 * Math.max(0, s ?? 0)}px;background:${color}` }), percent(s));
-  const robots = new Set(w.members.map((m) => m.robot)).size, takes = w.sigma === null ? "" : ` It takes ${w.sigma.toFixed(2)}.`;
+  const robots = new Set(w.members.map((m) => m.robot)).size, takes = w.sigma === null ? "" : ` From ${w.sigma.toFixed(2)} on things count as the same, 1 is equal.`;
   const sentence = w.members.length === 1 ? `Only ${w.members[0].robot} knows it: nobody else told of anything enough like it.${takes}`
-    : `${robots === 1 ? "One robot" : `${robots} robots`} told of ${w.members.length} things that are alike in what they are made of.${takes}`;
+    : `${robots === 1 ? "One robot" : `${robots} robots`} told of ${w.members.length} things that look alike.${takes}`;
   const kinds = w.shared_words.filter((g) => g.words.some((word) => word.members === w.members.length)).length;
   const face = (slot: string, robot: string, topic: number): HTMLElement => { const p = pictures.ofTopic(robot, topic)[0]; return p ? pictures.image(slot, p) : el("span", { class: "nopicture", title: "no picture has come yet" }); };
   const other = w.nearest_label, otherPictures = other ? pictures.ofLabel(other.label).slice(0, 4).map((p) => pictures.image("other", p)) : [];
