@@ -252,7 +252,12 @@ std::string scores(const MissionSummary& mission) {
     text += fmt::format("<tr><td>{}{}</td><td>{:.3f}</td><td>{}</td></tr>\n", escaped(name),
                         name == flown ? " (flown)" : "", score.value("ami", 0.0), score.value("labels", 0));
   }
-  return text + "</table>\n";
+  text += "</table>\n";
+  if (mission.truth_png.empty()) return text;
+  return text +
+         "<p class=\"note\">As it was flown, the truth beside it; labels have the colours of the classes "
+         "that they meet most.</p>\n" +
+         image(mission.truth_png, " class=\"map\"", "the fused map beside the truth") + "\n";
 }
 
 }  // namespace
