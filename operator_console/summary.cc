@@ -10,6 +10,7 @@
 
 #include "operator_console/label_pictures.h"
 #include "operator_console/mission_sources.h"
+#include "operator_console/render.h"
 #include "operator_console/verify.h"
 #include "shoal/mapping/atomic_file.h"
 #include "shoal/mapping/queries.h"
@@ -38,7 +39,9 @@ MissionSummary readSummaryOf(const std::string& run) {
   for (const Json& row : mission.labels) mission.area_m2 += row.at("area_m2").get<double>();
   mission.pictures = picturesOfRun(run);
   namespace fs = std::filesystem;
-  if (fs::exists(run + "/global_map.png")) mission.map_png = mapping::readFile(run + "/global_map.png");
+  mission.map_png = encodePng(
+      render(view.map, world::Grid(view.cell_size_m), "north up", {}, legendPictures(mission.pictures)));
+  if (fs::exists(run + "/global_map.png")) mission.truth_png = mapping::readFile(run + "/global_map.png");
   if (fs::exists(run + "/mission.lcmlog")) mission.verified = verify(run + "/mission.lcmlog").json();
   return mission;
 }

@@ -17,7 +17,8 @@ struct MissionSummary {
   nlohmann::ordered_json labels;                   ///< rows as `labels --json` has them, largest area first
   double area_m2 = 0;                              ///< of all labels
   mapping::LabelPictures pictures;                 ///< what labels look like
-  std::string map_png;                             ///< bytes of global_map.png; empty when it is missing
+  std::string map_png;                             ///< the map as it is now, in the colours of labels
+  std::string truth_png;                           ///< bytes of global_map.png; empty when it is missing
   std::optional<nlohmann::ordered_json> verified;  ///< `verify --json` of the recording; none without one
 };
 

@@ -10,7 +10,6 @@
 #include "fusion_node/picture_files.h"
 #include "operator_console/render.h"
 #include "operator_console/summary.h"
-#include "shoal/comms/packet.h"
 #include "shoal/world/ids.h"
 
 namespace shoal::console {
@@ -24,7 +23,7 @@ constexpr std::string_view kStyle = R"(
 body { font: 15px/1.5 system-ui, sans-serif; color: #1b2733; background: #fbfcfd; max-width: 64rem; margin: 2rem auto; padding: 0 1.2rem; }
 h1 { font-size: 1.6rem; margin-bottom: .2rem; } h2 { font-size: 1.15rem; margin-top: 2.4rem; border-bottom: 1px solid #d5dde5; padding-bottom: .3rem; }
 .note { color: #52616f; } .good { color: #1d6b3c; } .bad { color: #a3271c; font-weight: 600; }
-dl.facts { display: grid; grid-template-columns: repeat(auto-fit, minmax(9rem, 1fr)); gap: .8rem; margin: 1.2rem 0; }
+dl.facts { display: grid; grid-template-columns: repeat(auto-fit, minmax(7.5rem, 1fr)); gap: .8rem; margin: 1.2rem 0; }
 dl.facts div { background: #fff; border: 1px solid #e1e7ed; border-radius: 6px; padding: .5rem .8rem; }
 dt { color: #52616f; font-size: .8rem; } dd { margin: 0; font-size: 1.15rem; font-weight: 600; }
 img.map { max-width: 100%; border: 1px solid #d5dde5; }
@@ -32,8 +31,8 @@ img.map { max-width: 100%; border: 1px solid #d5dde5; }
 .card { background: #fff; border: 1px solid #e1e7ed; border-radius: 6px; padding: .7rem .8rem; break-inside: avoid; }
 .card h3 { font-size: 1rem; margin: 0 0 .4rem; display: flex; align-items: center; gap: .5rem; }
 .swatch { width: 1rem; height: 1rem; border-radius: 3px; border: 1px solid #0003; display: inline-block; }
-.shots { display: flex; gap: 4px; margin-bottom: .4rem; } .shots img { width: 64px; height: 64px; border-radius: 3px; }
-.shots img:first-child { width: 64px; } .card p { margin: .1rem 0; font-size: .88rem; }
+.shots { display: grid; grid-template-columns: repeat(4, 1fr); gap: 4px; margin-bottom: .4rem; } .shots .note { grid-column: 1 / -1; }
+.shots img { width: 100%; border-radius: 3px; } .card p { margin: .1rem 0; font-size: .88rem; }
 table { border-collapse: collapse; margin: .8rem 0; width: 100%; font-size: .9rem; }
 th, td { padding: .25rem .6rem; text-align: right; border-bottom: 1px solid #e4e9ee; } th:first-child, td:first-child { text-align: left; }
 th { font-weight: 600; color: #52616f; } .bar { display: flex; height: .8rem; width: 14rem; background: #edf1f4; }
@@ -42,9 +41,18 @@ th { font-weight: 600; color: #52616f; } .bar { display: flex; height: .8rem; wi
   * { print-color-adjust: exact; -webkit-print-color-adjust: exact; } }
 )";
 
-// Colours that the colour-blind tell apart (Okabe and Ito 2008), by traffic class.
-constexpr std::array<std::string_view, comms::kNumTrafficClasses> kClassColors = {
-    "#999999", "#cc79a7", "#d55e00", "#0072b2", "#56b4e9", "#009e73", "#dddddd"};
+// Colours that the colour-blind tell apart (Okabe and Ito 2008), by what summary.json calls the classes of
+// traffic; what stays on its own host (local) is not on the link.
+struct TrafficColor {
+  std::string_view name, color;
+};
+constexpr std::array<TrafficColor, 7> kTraffic = {{{"heartbeat", "#999999"},
+                                                   {"matches", "#cc79a7"},
+                                                   {"topics", "#d55e00"},
+                                                   {"bricks", "#0072b2"},
+                                                   {"certainty", "#56b4e9"},
+                                                   {"pictures", "#009e73"},
+                                                   {"repair", "#e69f00"}}};
 
 std::string escaped(const std::string& text) {
   std::string safe;
@@ -137,8 +145,9 @@ std::string card(const MissionSummary& mission, const Json& row) {
     }
   }
   const double area = row.at("area_m2");
-  text += fmt::format("</div><p><b>{:.1f} m&sup2;</b>, {:.1f} % of the map</p><p>{}</p>", area,
-                      mission.area_m2 > 0 ? 100 * area / mission.area_m2 : 0, finderOf(row));
+  const double share = mission.area_m2 > 0 ? 100 * area / mission.area_m2 : 0;
+  text += fmt::format("</div><p><b>{:.1f} m&sup2;</b>, {} of the map</p><p>{}</p>", area,
+                      share < 0.05 ? "less than 0.1 %" : fmt::format("{:.1f} %", share), finderOf(row));
   const size_t robots = row.at("robots").size();
   return text + fmt::format("<p class=\"note\">{} robot{}, certainty {:.2f}</p></div>\n", robots,
                             robots == 1 ? "" : "s", row.at("certainty").get<double>());
@@ -174,9 +183,8 @@ std::string link(const MissionSummary& mission) {
                     100 * window.at("bytes").get<double>() /
                         std::max(1.0, static_cast<double>(budget) * window.at("length_s").get<double>()));
   text += "<p class=\"key note\">";
-  for (size_t k = 0; k + 1 < comms::kNumTrafficClasses; ++k) {  // the last stays on its own host
-    text += fmt::format("<i style=\"background:{}\"></i>{}", kClassColors[k], comms::kTrafficClassNames[k]);
-  }
+  for (const auto& [name, color] : kTraffic)
+    text += fmt::format("<i style=\"background:{}\"></i>{}", color, name);
   text +=
       "</p>\n<table><tr><th>node</th><th>bytes</th><th style=\"text-align:left\">by "
       "class</th><th>images</th><th>cells</th>"
@@ -191,18 +199,21 @@ std::string link(const MissionSummary& mission) {
   for (const Json& node : f.at("nodes")) {
     const Json bytes = f.at("bytes").value(node.at("name").get<std::string>(), Json::object());
     std::string bar;
-    for (size_t k = 0; k + 1 < comms::kNumTrafficClasses; ++k) {
-      const double share =
-          100 * bytes.value(std::string(comms::kTrafficClassNames[k]), 0.0) / static_cast<double>(most);
-      if (share > 0)
-        bar += fmt::format("<i style=\"width:{:.2f}%;background:{}\"></i>", share, kClassColors[k]);
+    for (const auto& [name, color] : kTraffic) {
+      const double share = 100 * bytes.value(std::string(name), 0.0) / static_cast<double>(most);
+      if (share > 0) bar += fmt::format("<i style=\"width:{:.2f}%;background:{}\"></i>", share, color);
     }
-    const int images = node.at("observation").get<int>() + 1;
+    const bool flies = node.at("phase") != "node";
+    const auto ofRobots = [flies](int count) {
+      return flies ? std::to_string(count) : std::string("&ndash;");
+    };
     text += fmt::format(
         "<tr><td>{}</td><td>{}</td><td><div class=\"bar\">{}</div></td><td>{}</td><td>{}</td><td>{}</td>"
         "<td>{}</td><td>{}</td></tr>\n",
-        escaped(node.at("name").get<std::string>()), sum(bytes), bar, images, node.at("cells").get<int>(),
-        node.at("topics").get<int>(), node.at("rejected").get<int>(), node.at("conflicts").get<int>());
+        escaped(node.at("name").get<std::string>()), sum(bytes), bar,
+        ofRobots(node.at("observation").get<int>() + 1), node.at("cells").get<int>(),
+        ofRobots(node.at("topics").get<int>()), node.at("rejected").get<int>(),
+        node.at("conflicts").get<int>());
   }
   return text + "</table>\n";
 }
@@ -241,7 +252,12 @@ std::string scores(const MissionSummary& mission) {
     text += fmt::format("<tr><td>{}{}</td><td>{:.3f}</td><td>{}</td></tr>\n", escaped(name),
                         name == flown ? " (flown)" : "", score.value("ami", 0.0), score.value("labels", 0));
   }
-  return text + "</table>\n";
+  text += "</table>\n";
+  if (mission.truth_png.empty()) return text;
+  return text +
+         "<p class=\"note\">As it was flown, the truth beside it; labels have the colours of the classes "
+         "that they meet most.</p>\n" +
+         image(mission.truth_png, " class=\"map\"", "the fused map beside the truth") + "\n";
 }
 
 }  // namespace
