@@ -20,7 +20,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kFrame = "mission";
+constexpr const char* kMissionFrame = "mission";
 constexpr uint64_t kBillion = 1'000'000'000;
 
 uint64_t nanoseconds(world::Timestamp time) {
@@ -30,8 +30,8 @@ uint64_t nanoseconds(double s) {
   return static_cast<uint64_t>(std::llround(std::clamp(s, 0.0, 9e9) * 1e6)) * 1000;
 }
 
-Json stamp(uint64_t ns) { return {{"sec", ns / kBillion}, {"nsec", ns % kBillion}}; }
-Json point(double x, double y, double z) { return {{"x", x}, {"y", y}, {"z", z}}; }
+Json mcapStamp(uint64_t ns) { return {{"sec", ns / kBillion}, {"nsec", ns % kBillion}}; }
+Json mcapPoint(double x, double y, double z) { return {{"x", x}, {"y", y}, {"z", z}}; }
 const Json kNoTurn = {{"x", 0}, {"y", 0}, {"z", 0}, {"w", 1}};
 
 // Messages in order of time; topics are declared as they come.
@@ -86,9 +86,9 @@ Json cloudOf(const mapping::MissionView& view, uint64_t ns) {
     addLittleEndian(data, static_cast<uint16_t>(world::number(c.robot)));
     addLittleEndian(data, static_cast<float>(newest.seconds() - c.seen.seconds()));
   }
-  return {{"timestamp", stamp(ns)},
-          {"frame_id", kFrame},
-          {"pose", {{"position", point(0, 0, 0)}, {"orientation", kNoTurn}}},
+  return {{"timestamp", mcapStamp(ns)},
+          {"frame_id", kMissionFrame},
+          {"pose", {{"position", mcapPoint(0, 0, 0)}, {"orientation", kNoTurn}}},
           {"point_stride", stride},
           {"fields", fields},
           {"data", base64(data)}};
@@ -99,15 +99,15 @@ void sayRobots(Topics& topics, const mapping::MissionView& view, const GeoFrame*
     if (node.phase == "node" || node.observation < 0) continue;
     const uint64_t ns = nanoseconds(node.heard_s);
     topics.say("/tf", "foxglove.FrameTransform", kFrameTransformSchema, ns,
-               {{"timestamp", stamp(ns)},
-                {"parent_frame_id", kFrame},
+               {{"timestamp", mcapStamp(ns)},
+                {"parent_frame_id", kMissionFrame},
                 {"child_frame_id", node.name},
-                {"translation", point(node.x_m, node.y_m, node.z_m)},
+                {"translation", mcapPoint(node.x_m, node.y_m, node.z_m)},
                 {"rotation", kNoTurn}});
     if (frame == nullptr) continue;
     const auto at = frame->degreesOf(node.x_m, node.y_m);
     topics.say("/robots/" + node.name, "foxglove.LocationFix", kLocationFixSchema, ns,
-               {{"timestamp", stamp(ns)},
+               {{"timestamp", mcapStamp(ns)},
                 {"frame_id", node.name},
                 {"latitude", at.latitude},
                 {"longitude", at.longitude},
@@ -123,7 +123,7 @@ void sayPictures(Topics& topics, const mapping::LabelPictures& pictures) {
       const uint64_t ns = nanoseconds(picture.seen);
       topics.say("/pictures/" + std::to_string(world::number(label)), "foxglove.CompressedImage",
                  kCompressedImageSchema, ns,
-                 {{"timestamp", stamp(ns)},
+                 {{"timestamp", mcapStamp(ns)},
                   {"frame_id", name(picture.robot)},
                   {"data", base64(encodePng(fusion_node::pixelsOf(picture)))},
                   {"format", "png"}});
@@ -140,7 +140,7 @@ void sayEvents(Topics& topics, const Json& events) {
     const bool is_bad = kind == "lost" || kind == "twin" || kind == "refused" || kind == "mission";
     const uint64_t ns = nanoseconds(event.at("at_s").get<double>());
     topics.say("/events", "foxglove.Log", kLogSchema, ns,
-               {{"timestamp", stamp(ns)},
+               {{"timestamp", mcapStamp(ns)},
                 {"level", is_bad ? kWarning : kInfo},
                 {"message", event.at("says")},
                 {"name", event.at("node")},

@@ -13,9 +13,9 @@ namespace shoal::console {
 namespace {
 
 constexpr size_t kChunkBytes = size_t{4} << 20;  // a chunk ends with the message that fills it
-constexpr std::string_view kMagic = "\x89MCAP0\r\n";
+constexpr std::string_view kMcapMagic = "\x89MCAP0\r\n";
 
-enum class Op : uint8_t {
+enum class McapOp : uint8_t {
   kHeader = 1,
   kFooter,
   kSchema,
@@ -29,28 +29,28 @@ enum class Op : uint8_t {
   kDataEnd = 0x0f
 };
 
-void addText(std::string& bytes, std::string_view text) {
+void addMcapText(std::string& bytes, std::string_view text) {
   addLittleEndian(bytes, static_cast<uint32_t>(text.size()));
   bytes += text;
 }
 
-void addRecord(std::string& bytes, Op op, std::string_view content) {
+void addMcapRecord(std::string& bytes, McapOp op, std::string_view content) {
   bytes += static_cast<char>(op);
   addLittleEndian(bytes, static_cast<uint64_t>(content.size()));
   bytes += content;
 }
 
-uint32_t crcOf(std::string_view bytes) {
+uint32_t mcapCrc(std::string_view bytes) {
   return static_cast<uint32_t>(crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 
 }  // namespace
 
-McapWriter::McapWriter() : file_(kMagic) {
+McapWriter::McapWriter() : file_(kMcapMagic) {
   std::string header;
-  addText(header, "");  // no profile
-  addText(header, "shoal");
-  addRecord(file_, Op::kHeader, header);
+  addMcapText(header, "");  // no profile
+  addMcapText(header, "shoal");
+  addMcapRecord(file_, McapOp::kHeader, header);
 }
 
 uint16_t McapWriter::channel(const std::string& topic, const std::string& schema_name,
@@ -60,10 +60,10 @@ uint16_t McapWriter::channel(const std::string& topic, const std::string& schema
   if (is_new) {
     std::string content, record;
     addLittleEndian(content, schema->second);
-    addText(content, schema_name);
-    addText(content, "jsonschema");
-    addText(content, json_schema);
-    addRecord(record, Op::kSchema, content);
+    addMcapText(content, schema_name);
+    addMcapText(content, "jsonschema");
+    addMcapText(content, json_schema);
+    addMcapRecord(record, McapOp::kSchema, content);
     schemas_ += record;
     records_ += record;
   }
@@ -71,10 +71,10 @@ uint16_t McapWriter::channel(const std::string& topic, const std::string& schema
   std::string content, record;
   addLittleEndian(content, id);
   addLittleEndian(content, schema->second);
-  addText(content, topic);
-  addText(content, "json");
+  addMcapText(content, topic);
+  addMcapText(content, "json");
   addLittleEndian(content, uint32_t{0});  // no metadata
-  addRecord(record, Op::kChannel, content);
+  addMcapRecord(record, McapOp::kChannel, content);
   channels_ += record;
   records_ += record;
   counts_[id] = 0;
@@ -93,7 +93,7 @@ void McapWriter::say(uint16_t channel, uint64_t time_ns, std::string_view json) 
   addLittleEndian(content, time_ns);
   addLittleEndian(content, time_ns);
   content += json;
-  addRecord(records_, Op::kMessage, content);
+  addMcapRecord(records_, McapOp::kMessage, content);
   if (records_.size() >= kChunkBytes) endChunk();
 }
 
@@ -105,11 +105,11 @@ void McapWriter::endChunk() {
   addLittleEndian(content, chunk.first_ns);
   addLittleEndian(content, chunk.last_ns);
   addLittleEndian(content, static_cast<uint64_t>(records_.size()));
-  addLittleEndian(content, crcOf(records_));
-  addText(content, "");  // not compressed
+  addLittleEndian(content, mcapCrc(records_));
+  addMcapText(content, "");  // not compressed
   addLittleEndian(content, static_cast<uint64_t>(records_.size()));
   content += records_;
-  addRecord(file_, Op::kChunk, content);
+  addMcapRecord(file_, McapOp::kChunk, content);
   chunk.size = file_.size() - chunk.at;
   for (const auto& [channel, entries] : index_) {
     std::string index;
@@ -120,7 +120,7 @@ void McapWriter::endChunk() {
       addLittleEndian(index, offset);
     }
     chunk.index_at[channel] = file_.size();
-    addRecord(file_, Op::kMessageIndex, index);
+    addMcapRecord(file_, McapOp::kMessageIndex, index);
   }
   chunk.index_size = file_.size() - chunk.at - chunk.size;
   chunks_.push_back(std::move(chunk));
@@ -132,10 +132,11 @@ std::string McapWriter::finish() {
   endChunk();
   std::string end;
   addLittleEndian(end, uint32_t{0});  // no checksum over all: chunks have theirs
-  addRecord(file_, Op::kDataEnd, end);
+  addMcapRecord(file_, McapOp::kDataEnd, end);
 
   const uint64_t summary_at = file_.size();
-  std::vector<std::pair<Op, std::string>> groups = {{Op::kSchema, schemas_}, {Op::kChannel, channels_}};
+  std::vector<std::pair<McapOp, std::string>> groups = {{McapOp::kSchema, schemas_},
+                                                        {McapOp::kChannel, channels_}};
   std::string statistics, indexes;
   uint64_t messages = 0, first_ns = 0, last_ns = 0;
   for (const auto& [channel, count] : counts_) messages += count;
@@ -160,8 +161,8 @@ std::string McapWriter::finish() {
     addLittleEndian(content, channel);
     addLittleEndian(content, count);
   }
-  addRecord(statistics, Op::kStatistics, content);
-  groups.emplace_back(Op::kStatistics, statistics);
+  addMcapRecord(statistics, McapOp::kStatistics, content);
+  groups.emplace_back(McapOp::kStatistics, statistics);
   for (const Chunk& c : chunks_) {
     content.clear();
     for (const uint64_t number : {c.first_ns, c.last_ns, c.at, c.size}) addLittleEndian(content, number);
@@ -171,12 +172,12 @@ std::string McapWriter::finish() {
       addLittleEndian(content, at);
     }
     addLittleEndian(content, c.index_size);
-    addText(content, "");
+    addMcapText(content, "");
     addLittleEndian(content, c.records_size);
     addLittleEndian(content, c.records_size);
-    addRecord(indexes, Op::kChunkIndex, content);
+    addMcapRecord(indexes, McapOp::kChunkIndex, content);
   }
-  groups.emplace_back(Op::kChunkIndex, indexes);
+  groups.emplace_back(McapOp::kChunkIndex, indexes);
 
   std::string offsets;
   for (const auto& [op, records] : groups) {
@@ -185,18 +186,18 @@ std::string McapWriter::finish() {
     content += static_cast<char>(op);
     addLittleEndian(content, static_cast<uint64_t>(file_.size()));
     addLittleEndian(content, static_cast<uint64_t>(records.size()));
-    addRecord(offsets, Op::kSummaryOffset, content);
+    addMcapRecord(offsets, McapOp::kSummaryOffset, content);
     file_ += records;
   }
   const uint64_t offsets_at = file_.size();
   file_ += offsets;
   // The footer's checksum covers the summary and the footer up to itself.
-  file_ += static_cast<char>(Op::kFooter);
+  file_ += static_cast<char>(McapOp::kFooter);
   addLittleEndian(file_, uint64_t{20});
   addLittleEndian(file_, summary_at);
   addLittleEndian(file_, offsets_at);
-  addLittleEndian(file_, crcOf(std::string_view(file_).substr(summary_at)));
-  file_ += kMagic;
+  addLittleEndian(file_, mcapCrc(std::string_view(file_).substr(summary_at)));
+  file_ += kMcapMagic;
   return std::move(file_);
 }
 
