@@ -2,10 +2,15 @@
 #include "fusion_node/mission_state.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include <spdlog/fmt/fmt.h>
 
 #include "fusion_node/authentication.h"
 #include "fusion_node/limits.h"
 #include "shoal/comms/channels.h"
+#include "shoal/mapping/common_settings.h"
+#include "shoal/mapping/judgement.h"
 #include "shoal/wire/message_kind.h"
 #include "shoal/wire/piece_codec.h"
 #include "shoal/wire/repair_codec.h"
@@ -100,6 +105,11 @@ bool MissionState::takeIn(const comms::Packet& packet, comms::Stats& stats) {
         return refuse("too many nodes");
       }
       events_.heard(channel->node, *heartbeat);
+      if (const auto robot = world::parseRobotId(channel->node)) {
+        clocks_.heard(channel->node, heartbeat->time.us);
+        beliefs_.noteEpoch(*robot, heartbeat->epoch);
+      }
+      twins_.heard(channel->node, *heartbeat);
       wire::Heartbeat& held = heartbeats_[channel->node];
       const auto age = [](const wire::Heartbeat& h) { return std::pair(h.epoch, h.time); };
       if (age(*heartbeat) >= age(held)) held = *heartbeat;
@@ -110,6 +120,7 @@ bool MissionState::takeIn(const comms::Packet& packet, comms::Stats& stats) {
     case wire::MessageKind::kBrick:
     case wire::MessageKind::kCertainty:
     case wire::MessageKind::kPicture:
+    case wire::MessageKind::kSettings:
     case wire::MessageKind::kEdit: {
       const auto pieces = wire::decodePieces(header->kind, packet.bytes);
       if (!pieces) return refuse(wire::name(pieces.error()));
@@ -140,6 +151,8 @@ bool MissionState::take(const mapping::Piece& piece, bool repaired, comms::Stats
 }
 
 mapping::Applied MissionState::apply(const mapping::Piece& piece) {
+  const auto owner = heartbeats_.find(name(piece.key.robot));
+  if (owner != heartbeats_.end() && piece.version.epoch < owner->second.epoch) return mapping::Applied::kOld;
   const mapping::Applied applied = beliefs_.apply(piece);
   if (applied == mapping::Applied::kConflict) ++conflicts_;
   return applied;
@@ -179,9 +192,48 @@ bool MissionState::holdsWhole(const std::string& robot) const {
 }
 
 double MissionState::cellSize() const {
+  if (const auto common = commonSettings(beliefs_, mapping::judge(beliefs_).excluded))
+    return common->cell_size_m;
   for (const auto& [name, heartbeat] : heartbeats_)
     if (heartbeat.phase != wire::Phase::kNode) return heartbeat.cell_size_m;
   return cell_size_m_;
+}
+
+std::vector<mapping::Mixture> MissionState::mixtures() const {
+  std::vector<mapping::Mixture> mixed;
+  for (const auto& [name, heartbeat] : heartbeats_) {
+    const auto skew = clocks_.skewOf(name);
+    if (!skew || std::abs(*skew) <= clock_tolerance_s_) continue;
+    mixed.push_back(
+        {"clock", name,
+         fmt::format("the clock of {} is {:.0f} s {} the other robots': what it saw counts as {} than "
+                     "it is",
+                     name, std::abs(*skew), *skew > 0 ? "ahead of" : "behind",
+                     *skew > 0 ? "newer" : "older")});
+  }
+  if (conflicts_ > 0) {
+    mixed.push_back({"conflict", "",
+                     fmt::format("{} pieces differ from others of the same version: two processes with one "
+                                 "robot's name",
+                                 conflicts_)});
+  }
+  for (const int32_t mission : other_missions_)
+    mixed.push_back({"mission", "", fmt::format("mission {} is heard on the same URL", mission)});
+  const auto common = commonSettings(beliefs_, mapping::judge(beliefs_).excluded);
+  for (const world::RobotId robot : beliefs_.robots()) {
+    const mapping::Comparable comparable = compare(beliefs_, robot, common);
+    if (robot == mapping::kOperators || comparable == mapping::Comparable::kSame ||
+        comparable == mapping::Comparable::kUnknown)
+      continue;
+    const bool cells = comparable == mapping::Comparable::kOtherCells;
+    mixed.push_back({"settings", name(robot),
+                     fmt::format("{} has {} than most of the team: its {}", name(robot), toText(comparable),
+                                 cells ? "cells are left out of the map" : "topics are not matched")});
+  }
+  for (const auto& [name, heartbeat] : heartbeats_) {
+    if (twins_.hasTwin(name)) mixed.push_back({"twin", name, "two processes speak as " + name + " by turns"});
+  }
+  return mixed;
 }
 
 mapping::MissionView MissionState::view() const {
@@ -191,9 +243,14 @@ mapping::MissionView MissionState::view() const {
                             .state_digest = beliefs_.digest(),
                             .map_digest = mapDigest(),
                             .nodes = {}};
+  const auto common = commonSettings(beliefs_, mapping::judge(beliefs_).excluded);
   for (const auto& [name, h] : heartbeats_) {
     view.nodes.push_back(statusOf(name, h, holdsWhole(name), {fused_.stateDigest(), mapDigest()}));
+    view.nodes.back().clock_skew_s = clocks_.skewOf(name);
+    if (const auto robot = world::parseRobotId(name))
+      view.nodes.back().settings = toText(compare(beliefs_, *robot, common));
   }
+  view.mixed = mixtures();
   for (const auto& [name, messages] : sealed_nodes_) view.strangers.push_back({name, "a key", messages});
   std::ranges::stable_sort(view.nodes, {}, [](const mapping::NodeStatus& n) {
     const auto robot = world::parseRobotId(n.name);

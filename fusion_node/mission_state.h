@@ -8,7 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "fusion_node/clock_watch.h"
 #include "fusion_node/event_log.h"
+#include "fusion_node/twin_watch.h"
 #include "shoal/comms/packet.h"
 #include "shoal/comms/stats.h"
 #include "shoal/mapping/belief_store.h"
@@ -63,6 +65,12 @@ class MissionState {
   const std::set<int32_t>& otherMissions() const { return other_missions_; }
   /// Pieces of equal version and other content: two processes with one robot id.
   int32_t conflicts() const { return conflicts_; }
+  /// Seconds that a robot's clock may be off before mixtures() says so. Where robots fly as fast as possible
+  /// their clocks run apart, and that is no fault: leave it high there.
+  void setClockTolerance(double seconds) { clock_tolerance_s_ = seconds; }
+  static constexpr double kClockTolerance = 1200;
+  /// What does not belong together: clocks that are off, twins, other missions, other settings.
+  std::vector<mapping::Mixture> mixtures() const;
   /// Who speaks with a key, which we do not have: messages by the names of their channels.
   const std::map<std::string, uint64_t>& sealedNodes() const { return sealed_nodes_; }
   /// Latest mission time in any heartbeat.
@@ -85,7 +93,8 @@ class MissionState {
   /// True when all is held that this robot says it has.
   bool holdsWhole(const std::string& robot) const;
 
-  /// Edge of a cell as the lowest robot says, metres; the constructor's before any was heard.
+  /// Edge of a cell as most robots say, metres; as the heartbeat of the lowest says before that, and the
+  /// constructor's before any was heard.
   double cellSize() const;
 
   /// Everything as one value to ask questions of, with the map as of the last refresh.
@@ -105,6 +114,9 @@ class MissionState {
   std::map<std::string, wire::Heartbeat> heartbeats_;
   std::set<int32_t> other_missions_;
   std::map<std::string, uint64_t> sealed_nodes_;
+  ClockWatch clocks_;
+  TwinWatch twins_;
+  double clock_tolerance_s_ = kClockTolerance;
   int32_t conflicts_ = 0;
   world::Timestamp latest_;
   mapping::FusedMap fused_;

@@ -41,6 +41,9 @@ constexpr int64_t kPublishPeriodMs = 1000;
 // Of a message with a piece of the library: on every node the same, so that its parts are.
 constexpr size_t kMostLibraryBytes = 700;
 
+// Robots start one after the other, and messages take their time: in seconds of wall time.
+constexpr double kClockToleranceS = 60;
+
 // Lists about the map are no part of the state, so nobody asks for them: they are repeated.
 constexpr int kListRepeats = 2;
 
@@ -66,6 +69,7 @@ Node::Node(const NodeOptions& options, comms::Bus& link, comms::Bus& local)
       repair_({options.name, options.mission, options.budget, {}, true, {}, {}}, state_, sender_),
       silence_(options.budget, wallMs()) {
   link.countInto(sender_.stats());
+  if (options.rate > 0) state_.setClockTolerance(kClockToleranceS * std::max(options.rate, 1.0));
   if (!options.state_dir.empty()) {
     recall();
     loadEdits();
@@ -93,6 +97,7 @@ void Node::turn(int timeout_ms) {
   if (const auto warning = silence_.check(wallMs())) spdlog::warn("{}", *warning);
   warnOfStrangers();
   checkLibrary();
+  warnOfMixtures();
   if (options_.rate == 0) clock_.advanceTo(state_.latestTime().us);
 
   const int64_t wall = wallMs();
@@ -343,6 +348,16 @@ void Node::warnOfStrangers() {
       spdlog::warn("{} is a stranger here: it has {}", s.name, s.has);
   } else {
     spdlog::warn("{} nodes speak with a key that this one lacks: --key FILE", heard);
+  }
+}
+
+// Each once; who they are of is bounded by the nodes and missions that are remembered.
+void Node::warnOfMixtures() {
+  if (wallMs() - looked_for_mixtures_ms_ < kPublishPeriodMs) return;
+  looked_for_mixtures_ms_ = wallMs();
+  for (const mapping::Mixture& mixture : state_.mixtures()) {
+    const std::string& whose = mixture.kind == "mission" ? mixture.says : mixture.node;
+    if (warned_of_.emplace(mixture.kind, whose).second) spdlog::warn("{}", mixture.says);
   }
 }
 

@@ -5,7 +5,9 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
+#include <utility>
 
 #include "fusion_node/mission_state.h"
 #include "fusion_node/node_memory.h"
@@ -63,6 +65,7 @@ class Node {
   void publishMap();
   mapping::MissionView view() const;
   void warnOfStrangers();
+  void warnOfMixtures();
   nlohmann::ordered_json answer(const nlohmann::ordered_json& question);
   nlohmann::ordered_json answerAsk(const nlohmann::ordered_json& question);
   nlohmann::ordered_json answerEdit(const nlohmann::ordered_json& question);
@@ -87,6 +90,8 @@ class Node {
   std::map<std::string, size_t> num_chunks_;  // in the send queue, by channel
   size_t warned_of_strangers_ = 0;
   bool warned_of_library_ = false;
+  std::set<std::pair<std::string, std::string>> warned_of_;  // kinds and nodes of mixtures
+  int64_t looked_for_mixtures_ms_ = 0;
   uint64_t published_digest_ = 0;
   int64_t fused_at_ms_ = 0, published_at_ms_ = 0;
 };

@@ -14,6 +14,7 @@ std::string nameOf(const mapping::PieceKey& key) {
   if (key.kind == mapping::PieceKind::kPicture) {
     return "picture " + std::to_string(i[1]) + " of topic " + std::to_string(i[0]);
   }
+  if (key.kind == mapping::PieceKind::kSettings) return "settings";
   const std::string brick =
       "brick (" + std::to_string(i[0]) + ", " + std::to_string(i[1]) + ", " + std::to_string(i[2]) + ")";
   return (key.kind == mapping::PieceKind::kBrick ? "labels of " : "certainties of ") + brick;

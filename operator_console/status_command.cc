@@ -63,6 +63,9 @@ void print(const Json& a) {
   fmt::print("{:<9} {:<7} {:>8} {:>7} {:>6} {:>6} {:>5} {:>6} {:>4} {:<4} {}\n", "node", "phase", "heard s",
              "images", "topics", "cells", "used", "queue", "bad", "told", "map");
   for (const Json& n : a["nodes"]) printRow(n);
+  for (const Json& m : a["mixed"])
+    fmt::print("{:<9} {}: {}\n", m["node"].get<std::string>(), alarming(m["kind"].get<std::string>()),
+               m["says"].get<std::string>());
   for (const Json& s : a["strangers"]) {
     fmt::print("{:<9} {} has {}: {} messages\n", s["name"].get<std::string>(), alarming("stranger"),
                s["has"].get<std::string>(), s["messages"].get<uint64_t>());
@@ -104,7 +107,9 @@ void addStatusCommand(CLI::App& app, Action& chosen) {
       "used: bytes sent of what the budget allowed so far. queue: bytes that wait. bad: messages refused.\n"
       "told: whether all that a robot has to say was heard. map: the same as this one, made of another\n"
       "state (behind), or OTHER though made of the same state: an alarm, unless a recording was asked with\n"
-      "another --matcher than the mission's. A stranger speaks without the key that this node has, or with "
+      "another --matcher than the mission's. Below the table: clocks that are off, twins, other missions, "
+      "other\n"
+      "settings, each a line. A stranger speaks without the key that this node has, or with "
       "a\n"
       "key that it lacks.\n\n"
       "  operator_console status --node state --watch");

@@ -8,6 +8,7 @@
 
 #include "operator_console/agreement.h"
 #include "operator_console/log_check.h"
+#include "shoal/mapping/common_settings.h"
 #include "shoal/world/ids.h"
 
 namespace shoal::console {
@@ -26,21 +27,17 @@ int64_t bytesLacking(const NodeTraffic& node) {
 // Nodes of one mission that do not belong together.
 std::vector<std::string> mixedUp(const fusion_node::MissionState& state) {
   std::vector<std::string> lines;
-  for (const int32_t mission : state.otherMissions()) {
-    lines.push_back("mission " + std::to_string(mission) + " is in the recording too");
-  }
-  if (state.conflicts() > 0) {
-    lines.push_back(std::to_string(state.conflicts()) +
-                    " pieces differ from others of the same version: two processes with one robot's name");
-  }
+  for (const mapping::Mixture& mixture : state.mixtures()) lines.push_back(mixture.says);
   const std::pair<const std::string, wire::Heartbeat>* first = nullptr;
   for (const auto& node : state.heartbeats()) {
     if (node.second.phase == wire::Phase::kNode) continue;
     if (first == nullptr) first = &node;
-    if (node.second.vocabulary != first->second.vocabulary) {
+    const auto robot = world::parseRobotId(node.first);
+    const bool is_told = robot && mapping::commonSettings(state.beliefs(), {});  // by mixtures()
+    if (!is_told && node.second.vocabulary != first->second.vocabulary) {
       lines.push_back(node.first + " has another vocabulary, or hyper-parameters, than " + first->first);
     }
-    if (node.second.cell_size_m != first->second.cell_size_m) {
+    if (!is_told && node.second.cell_size_m != first->second.cell_size_m) {
       lines.push_back(fmt::format("{} has cells of {} m, {} of {} m", node.first, node.second.cell_size_m,
                                   first->first, first->second.cell_size_m));
     }

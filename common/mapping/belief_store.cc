@@ -50,6 +50,11 @@ Applied BeliefStore::apply(const Piece& piece) {
   return Applied::kNew;
 }
 
+void BeliefStore::noteEpoch(world::RobotId robot, int32_t epoch) {
+  const auto sum = sums_.find(robot);
+  if (sum != sums_.end() && sum->second.epoch < epoch) beginEpoch(robot, sum->second, epoch);
+}
+
 // All that the robot said in older epochs goes.
 void BeliefStore::beginEpoch(world::RobotId robot, RobotSum& sum, int32_t epoch) {
   const auto first =

@@ -37,6 +37,10 @@ class BeliefStore {
 
   Applied apply(const Piece& piece);
 
+  /// The robot was heard to be in this epoch: what is held of older ones is void. Nothing happens when
+  /// nothing was held of it.
+  void noteEpoch(world::RobotId robot, int32_t epoch);
+
   /// Takes the usable parts of every piece, ascending by key, then part.
   template <typename Visitor>
   void visit(Visitor&& visitor) const {

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "shoal/demand.h"
+#include "shoal/mapping/common_settings.h"
 #include "shoal/mapping/label_identity.h"
 #include "shoal/mapping/library.h"
 #include "shoal/mapping/topic_matching.h"
@@ -78,7 +79,8 @@ void giveNames(std::vector<LabelSummary>& rows, const Judgement& judgement,
 }  // namespace
 
 void FusedMap::update(const BeliefStore& beliefs, const matching::MatcherOptions& options) {
-  const Judgement judgement = judge(beliefs);
+  Judgement judgement = judge(beliefs);
+  judgement.excluded.merge(robotsOfOtherCells(beliefs, judgement.excluded));
   std::set<TileIndex> touched;
   for (const RobotBrick& brick : changes(beliefs)) readBrick(beliefs, brick, touched);
   exclude(judgement.excluded, touched);

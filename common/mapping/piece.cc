@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "shoal/mapping/piece.h"
 
+#include <bit>
+
 #include "shoal/random.h"
 
 namespace shoal::mapping {
@@ -43,6 +45,11 @@ class Hasher {
     add(std::ssize(part.layer));
     for (const uint8_t byte : part.layer) add(byte);
   }
+  void operator()(const SettingsPart& part) {
+    add(static_cast<int64_t>(part.words));
+    add(static_cast<int64_t>(part.hyperparameters));
+    add(std::bit_cast<int64_t>(part.cell_size_m));
+  }
   void operator()(const Edit& edit) { add(static_cast<int64_t>(contentHash(edit))); }
   uint64_t hash() const { return hash_; }
 
@@ -73,5 +80,9 @@ PieceKey keyOf(const Edit& edit) {
 }
 
 Piece pieceOf(const Edit& edit) { return {keyOf(edit), {}, 0, 1, edit}; }
+
+Piece pieceOf(world::RobotId robot, int32_t epoch, const SettingsPart& settings) {
+  return {{robot, PieceKind::kSettings, {}}, {epoch, 0}, 0, 1, settings};
+}
 
 }  // namespace shoal::mapping

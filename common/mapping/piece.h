@@ -14,14 +14,22 @@
 namespace shoal::mapping {
 
 /// What kinds of state travel. The numbers are part of the wire format.
-enum class PieceKind : uint8_t { kTopic = 1, kBrick = 2, kCertainty = 3, kEdit = 4, kPicture = 5 };
+enum class PieceKind : uint8_t {
+  kTopic = 1,
+  kBrick = 2,
+  kCertainty = 3,
+  kEdit = 4,
+  kPicture = 5,
+  kSettings = 6
+};
 
 /// What all operators decided is one share of the state, beside those of the robots.
 inline constexpr world::RobotId kOperators{10000};
 
 /// Names one unit of replicated state: a robot's topic (index = {topic id, 0, 0}), or a brick of its label
 /// map or of its certainty (index = brick coordinates); or an operator's edit: keyOf();
-/// or an example picture of a topic (index = {topic id, number of the example, 0}).
+/// or an example picture of a topic (index = {topic id, number of the example, 0}); or what a robot learns
+/// with (index = {0, 0, 0}).
 struct PieceKey {
   world::RobotId robot{};
   PieceKind kind = PieceKind::kTopic;
@@ -87,13 +95,22 @@ struct PicturePart {
   bool operator==(const PicturePart&) const = default;
 };
 
+/// What a robot learns with: only topics learnt with the same are comparable. Said once in every epoch, as
+/// version (epoch, 0).
+struct SettingsPart {
+  uint64_t words = 0;            ///< fingerprint of the visual vocabulary
+  uint64_t hyperparameters = 0;  ///< fingerprint of what else decides what it learns
+  double cell_size_m = 1;        ///< edge of a map cell, finite, > 0
+  bool operator==(const SettingsPart&) const = default;
+};
+
 /// One datagram's worth of replicated state. Same key, version and part: same content.
 struct Piece {
   PieceKey key;
   world::Version version;
   int32_t part = 0;       ///< in [0, num_parts)
   int32_t num_parts = 1;  ///< in [1, 255]
-  std::variant<TopicPart, BrickPart, CertaintyPart, Edit, PicturePart> content;
+  std::variant<TopicPart, BrickPart, CertaintyPart, Edit, PicturePart, SettingsPart> content;
   bool operator==(const Piece&) const = default;
 };
 
@@ -103,5 +120,8 @@ uint64_t contentHash(const Piece& piece);
 /// An edit as a piece. Its index holds its counter and a hash of its content, so that no two are mixed up.
 PieceKey keyOf(const Edit& edit);
 Piece pieceOf(const Edit& edit);
+
+/// A robot's settings as a piece.
+Piece pieceOf(world::RobotId robot, int32_t epoch, const SettingsPart& settings);
 
 }  // namespace shoal::mapping

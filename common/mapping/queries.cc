@@ -37,6 +37,8 @@ Json toJson(const NodeStatus& n) {
           {"position_m", {rounded(n.x_m, 1e3), rounded(n.y_m, 1e3), rounded(n.z_m, 1e3)}},
           {"rejected", n.rejected},
           {"conflicts", n.conflicts},
+          {"clock_skew_s", n.clock_skew_s ? Json(rounded(*n.clock_skew_s, 1e3)) : Json()},
+          {"settings", n.settings},
           {"heard_whole", n.heard_whole},
           {"agreement", n.agreement}};
 }
@@ -61,6 +63,10 @@ NodeStatus nodeFromJson(const Json& json) {
   json.at("conflicts").get_to(n.conflicts);
   json.at("heard_whole").get_to(n.heard_whole);
   n.agreement = json.value("agreement", "none");  // runs of older builds do not say
+  n.settings = json.value("settings", "none");
+  if (const auto skew = json.find("clock_skew_s"); skew != json.end() && skew->is_number()) {
+    n.clock_skew_s = skew->get<double>();
+  }
   return n;
 }
 
@@ -75,6 +81,9 @@ Json statusAnswer(const MissionView& view) {
   answer["strangers"] = Json::array();
   for (const StrangerStatus& s : view.strangers)
     answer["strangers"].push_back({{"name", s.name}, {"has", s.has}, {"messages", s.messages}});
+  answer["mixed"] = Json::array();
+  for (const Mixture& m : view.mixed)
+    answer["mixed"].push_back({{"kind", m.kind}, {"node", m.node}, {"says", m.says}});
   return answer;
 }
 

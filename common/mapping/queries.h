@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,12 @@ struct NodeStatus {
   float ms_per_frame = 0;
   float x_m = 0, y_m = 0, z_m = 0;  ///< position of the camera, world
   int32_t rejected = 0, conflicts = 0;
+  /// Seconds of mission time that its clock is ahead of the other robots' (behind: below 0), the least that
+  /// fits what was heard; nothing when it is no robot or was heard alone.
+  std::optional<double> clock_skew_s = {};
+  /// What it learns with beside what most robots do: "same", "other words", "other hyper-parameters", "other
+  /// cells", "unknown"; "none" when it is no robot.
+  std::string settings = "none";
   bool heard_whole = false;  ///< the answering node holds all that this one has to say
   /// Its map beside that of who answers: "same"; "behind" when it was made from another state; "other" when
   /// the states are equal and the maps are not, which is an alarm; "none" when it does not fuse.
@@ -40,6 +47,13 @@ struct StrangerStatus {
   uint64_t messages = 0;
 };
 
+/// What was heard together and does not belong together.
+struct Mixture {
+  std::string kind;  ///< "clock", "twin", "conflict", "mission", "settings"
+  std::string node;  ///< whose; empty when it is not one node's
+  std::string says;
+};
+
 /// A mission as one place knows it: a live node, a finished run or a recording. All questions are asked of
 /// it.
 struct MissionView {
@@ -49,6 +63,7 @@ struct MissionView {
   uint64_t state_digest = 0, map_digest = 0;
   std::vector<NodeStatus> nodes;               ///< robots first, by number, then the others by name
   std::vector<StrangerStatus> strangers = {};  ///< by name
+  std::vector<Mixture> mixed = {};             ///< by kind, then name
 };
 
 /// Answers as JSON objects; docs/operators.md shows one of each.

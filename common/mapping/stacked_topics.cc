@@ -6,6 +6,7 @@
 #include <numeric>
 #include <set>
 
+#include "shoal/mapping/common_settings.h"
 #include "shoal/mapping/library.h"
 
 namespace shoal::mapping {
@@ -13,11 +14,12 @@ namespace {
 
 using TopicKey = std::pair<world::RobotId, world::TopicId>;
 
-// The layout of word groups that most robots use; the first robot's among equals.
-std::vector<int32_t> commonLayout(const std::vector<HeardTopic>& topics) {
+// The layout of word groups that most comparable robots use; the first robot's among equals.
+std::vector<int32_t> commonLayout(const std::vector<HeardTopic>& topics,
+                                  const std::set<world::RobotId>& comparable) {
   std::vector<std::pair<std::vector<int32_t>, std::set<world::RobotId>>> users;
   for (const HeardTopic& topic : topics) {
-    if (topic.robot == kLibrary) continue;
+    if (topic.robot == kLibrary || !comparable.contains(topic.robot)) continue;
     auto known = std::ranges::find(users, topic.group_sizes, [](const auto& u) { return u.first; });
     if (known == users.end()) known = users.insert(users.end(), {topic.group_sizes, {}});
     known->second.insert(topic.robot);
@@ -62,7 +64,11 @@ StackedTopics stack(const BeliefStore& beliefs, const std::set<world::RobotId>& 
     topic.cells = cells.contains(key) ? cells.at(key) : 0;
     stacked.topics.push_back(std::move(topic));
   }
-  const std::vector<int32_t> layout = commonLayout(stacked.topics);
+  std::set<world::RobotId> comparable;
+  const auto common = commonSettings(beliefs, excluded);
+  for (const world::RobotId robot : beliefs.robots())
+    if (compare(beliefs, robot, common) == Comparable::kSame) comparable.insert(robot);
+  const std::vector<int32_t> layout = commonLayout(stacked.topics, comparable);
   matching::DescriptorSet& set = stacked.descriptors;
   set.vocabulary_size = std::reduce(layout.begin(), layout.end());
   for (int32_t first = 0; const int32_t size : layout) {
@@ -72,7 +78,9 @@ StackedTopics stack(const BeliefStore& beliefs, const std::set<world::RobotId>& 
   const world::RobotId* last = nullptr;
   int32_t next_vertex = 0;
   for (const HeardTopic& topic : stacked.topics) {
-    const bool takes_part = (topic.cells > 0 || topic.robot == kLibrary) && topic.group_sizes == layout;
+    const bool is_comparable =
+        topic.robot == kLibrary || (topic.cells > 0 && comparable.contains(topic.robot));
+    const bool takes_part = is_comparable && topic.group_sizes == layout;
     stacked.vertex.push_back(takes_part ? next_vertex++ : -1);
     if (!takes_part) continue;
     if (last == nullptr || *last != topic.robot) set.robots.emplace_back();

@@ -30,8 +30,8 @@ struct StackedTopics {
 };
 
 /// Puts the heard topics together and picks those that take part in matching: they label at least one cell
-/// and were learned with the vocabulary layout that most robots share (ties go to the layout of the lowest
-/// robot). Others keep a label of their own.
+/// and were learned with what most robots learn with (common_settings.h) and with the vocabulary layout that
+/// most of these share (ties go to the layout of the lowest robot). Others keep a label of their own.
 /// @param excluded  Robots that count as never heard.
 StackedTopics stack(const BeliefStore& beliefs, const std::set<world::RobotId>& excluded = {});
 

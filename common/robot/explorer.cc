@@ -99,6 +99,10 @@ std::vector<world::TopicId> Explorer::adopt(const std::vector<topics::AdoptedTop
   return model->adopt(others);
 }
 
+mapping::SettingsPart Explorer::settings() const {
+  return {words_->fingerprint(), topics::fingerprint(hyperparameters_), options_.cell_size_m};
+}
+
 uint64_t Explorer::fingerprint() const {
   return hashCombine(hashCombine(words_->fingerprint(), std::bit_cast<uint64_t>(options_.cell_size_m)),
                      topics::fingerprint(hyperparameters_));

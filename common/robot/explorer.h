@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "shoal/mapping/local_belief.h"
+#include "shoal/mapping/piece.h"
 #include "shoal/robot/example_book.h"
 #include "shoal/topics/make_learner.h"
 #include "shoal/topics/topic_model.h"
@@ -73,6 +74,8 @@ class Explorer {
   const std::vector<world::WordGroup>& groups() const { return words_->groups(); }
   /// Identifies words and hyper-parameters: only robots with equal fingerprints are comparable.
   uint64_t fingerprint() const;
+  /// The same, told apart, for others to compare.
+  mapping::SettingsPart settings() const;
   int64_t droppedWords() const { return dropped_words_; }
   const StageTimes& lastTimes() const { return times_; }
 

@@ -106,6 +106,14 @@ json fields(const mapping::Piece& piece, const mapping::PicturePart& picture) {
           {"layer", picture.layer}};
 }
 
+json fields(const mapping::Piece& piece, const mapping::SettingsPart& settings) {
+  return {{"robot", number(piece.key.robot)},
+          {"epoch", piece.version.epoch},
+          {"words", settings.words},
+          {"hyperparameters", settings.hyperparameters},
+          {"cell_size_m", settings.cell_size_m}};
+}
+
 json brickFields(const mapping::Piece& piece) {
   json j{{"part", piece.part},
          {"num_parts", piece.num_parts},
@@ -128,6 +136,8 @@ json fields(const std::vector<mapping::Piece>& pieces) {
   if (const auto* edit = std::get_if<mapping::Edit>(&first.content)) return fields(*edit);
   if (const auto* topic = std::get_if<mapping::TopicPart>(&first.content)) return fields(first, *topic);
   if (const auto* picture = std::get_if<mapping::PicturePart>(&first.content)) return fields(first, *picture);
+  if (const auto* settings = std::get_if<mapping::SettingsPart>(&first.content))
+    return fields(first, *settings);
   json j{{"robot", number(first.key.robot)}, {"epoch", first.version.epoch}};
   json& bricks = j[std::holds_alternative<mapping::BrickPart>(first.content) ? "bricks" : "certain_bricks"];
   for (const mapping::Piece& piece : pieces) bricks.push_back(brickFields(piece));
@@ -209,6 +219,7 @@ json messageJson(const std::string& channel, std::span<const uint8_t> bytes) {
     case MessageKind::kEdit:
       return told(decodePieces(header->kind, bytes));
     case MessageKind::kPicture:
+    case MessageKind::kSettings:
       return told(decodePieces(header->kind, bytes));
     case MessageKind::kMatches:
       return told(decodeMatches(bytes));

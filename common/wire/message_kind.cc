@@ -13,6 +13,7 @@
 #include <shoal/picture_t.hpp>
 #include <shoal/repair_t.hpp>
 #include <shoal/request_t.hpp>
+#include <shoal/settings_t.hpp>
 #include <shoal/topics_t.hpp>
 
 #include "shoal/wire/bytes.h"
@@ -60,6 +61,8 @@ size_t fixedBytesOf(MessageKind kind) {
       return fixedBytes<repair_t>();
     case MessageKind::kPicture:
       return fixedBytes<picture_t>();
+    case MessageKind::kSettings:
+      return fixedBytes<settings_t>();
   }
   SHOAL_DEMAND(false);
   return 0;
@@ -89,6 +92,8 @@ int64_t fingerprintOf(MessageKind kind) {
       return repair_t::getHash();
     case MessageKind::kPicture:
       return picture_t::getHash();
+    case MessageKind::kSettings:
+      return settings_t::getHash();
   }
   SHOAL_DEMAND(false);
   return 0;

@@ -25,12 +25,13 @@ enum class MessageKind : uint8_t {
   kEdit,
   kPicture,
   kRequest,
-  kRepair
+  kRepair,
+  kSettings
 };
 
-inline constexpr std::array<std::string_view, 11> kChannelKinds = {
+inline constexpr std::array<std::string_view, 12> kChannelKinds = {
     "HEARTBEAT", "TOPICS", "BRICK",   "CERTAINTY", "MATCHES", "LABELS",
-    "MAP",       "EDIT",   "PICTURE", "REQUEST",   "REPAIR"};
+    "MAP",       "EDIT",   "PICTURE", "REQUEST",   "REPAIR",  "SETTINGS"};
 inline constexpr size_t kNumMessageKinds = kChannelKinds.size();
 
 /// The last word of the channel a kind travels on, e.g. "TOPICS".

@@ -13,6 +13,7 @@
 #include "shoal/wire/message.h"
 #include "shoal/wire/payloads.h"
 #include "shoal/wire/picture_message.h"
+#include "shoal/wire/settings_message.h"
 
 namespace shoal::wire {
 namespace {
@@ -109,6 +110,8 @@ Bytes encodeValid(std::span<const Piece* const> pieces, int32_t mission, world::
   if (const auto* edit = std::get_if<mapping::Edit>(&first.content)) return encodeEdit(*edit, mission, time);
   if (std::holds_alternative<mapping::PicturePart>(first.content))
     return encodePictureMessage(first, mission, time);
+  if (std::holds_alternative<mapping::SettingsPart>(first.content))
+    return encodeSettingsMessage(first, mission, time);
   if (std::holds_alternative<BrickPart>(first.content))
     return pack(frameOfBricks(pieces, &bricks_t::bricks, mission, time), encodeBricks(pieces));
   return pack(frameOfBricks(pieces, &certainties_t::certain_bricks, mission, time),
@@ -165,6 +168,12 @@ Result<std::vector<Piece>> decodePictures(std::span<const uint8_t> bytes) {
   return std::vector{*picture};
 }
 
+Result<std::vector<Piece>> decodeSettings(std::span<const uint8_t> bytes) {
+  auto settings = decodeSettingsMessage(bytes);
+  if (!settings) return settings.error();
+  return std::vector{*settings};
+}
+
 size_t numCells(const Piece& piece) {
   if (const auto* brick = std::get_if<BrickPart>(&piece.content)) return brick->cells.size();
   if (const auto* certainty = std::get_if<CertaintyPart>(&piece.content)) return certainty->cells.size();
@@ -209,8 +218,10 @@ MessageKind kindOf(const Piece& piece) {
       return MessageKind::kCertainty;
     case 3:
       return MessageKind::kEdit;
-    default:
+    case 4:
       return MessageKind::kPicture;
+    default:
+      return MessageKind::kSettings;
   }
 }
 
@@ -225,6 +236,8 @@ std::string fault(const Piece& piece) {
   if (const auto* brick = std::get_if<BrickPart>(&piece.content)) return faultOf(*brick, piece.key);
   if (const auto* picture = std::get_if<mapping::PicturePart>(&piece.content))
     return faultOf(*picture, piece);
+  if (const auto* settings = std::get_if<mapping::SettingsPart>(&piece.content))
+    return faultOf(*settings, piece);
   return faultOf(std::get<CertaintyPart>(piece.content), piece.key);
 }
 
@@ -269,6 +282,7 @@ std::vector<Piece> cutToFit(const Piece& whole, size_t max_payload) {
   if (const std::string why = fault(whole); !why.empty()) throw std::invalid_argument("piece: " + why);
   if (std::holds_alternative<mapping::Edit>(whole.content)) return {whole};         // always small
   if (std::holds_alternative<mapping::PicturePart>(whole.content)) return {whole};  // cut into layers already
+  if (std::holds_alternative<mapping::SettingsPart>(whole.content)) return {whole};
   if (whole.num_parts != 1) throw std::invalid_argument("piece: it is a part already");
   const auto cut = [&](const auto& part, size_t count, size_t max_run) {
     const auto make = [&](size_t begin, size_t end) {
@@ -333,6 +347,8 @@ Result<std::vector<Piece>> decodePieces(MessageKind kind, std::span<const uint8_
         return decodeEdits(bytes);
       case MessageKind::kPicture:
         return decodePictures(bytes);
+      case MessageKind::kSettings:
+        return decodeSettings(bytes);
       default:
         return DecodeError::kWrongType;
     }

@@ -26,6 +26,8 @@ std::optional<MessageKind> messageOf(uint8_t piece_kind) {
       return MessageKind::kEdit;
     case mapping::PieceKind::kPicture:
       return MessageKind::kPicture;
+    case mapping::PieceKind::kSettings:
+      return MessageKind::kSettings;
   }
   return std::nullopt;
 }

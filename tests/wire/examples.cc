@@ -179,6 +179,10 @@ std::vector<Example> goldenExamples() {
   for (const auto& [name, piece] : pictures()) {
     examples.push_back({name, MessageKind::kPicture, encode(piece, kMission, time)});
   }
+  const Piece settings =
+      mapping::pieceOf(RobotId{3}, 1, {0xfedcba9876543210ULL, 0x0123456789abcdefULL, 0.8});
+  examples.push_back({"settings", MessageKind::kSettings, encode(settings, kMission, time)});
+  examples.push_back({"repair_settings", MessageKind::kRepair, encodeRepair(settings, kMission, time)});
   for (const auto& [name, edit] : edits()) {
     examples.push_back({name, MessageKind::kEdit, encode(mapping::pieceOf(edit), kMission, time)});
   }
@@ -207,6 +211,7 @@ Bytes decodeAndEncode(MessageKind kind, std::span<const uint8_t> bytes, DecodeEr
     case MessageKind::kCertainty:
     case MessageKind::kEdit:
     case MessageKind::kPicture:
+    case MessageKind::kSettings:
       return again(decodePieces(kind, bytes),
                    [&](const std::vector<Piece>& pieces) { return encode(pieces, mission, time); });
     case MessageKind::kMatches:

@@ -42,6 +42,8 @@ size_t documentedBytesOf(MessageKind kind) {
       return 57;
     case MessageKind::kPicture:
       return 62;
+    case MessageKind::kSettings:
+      return 57;
     case MessageKind::kEdit:
       return 60;
     case MessageKind::kRequest:

@@ -44,10 +44,13 @@ def edit_hash(m):
 
 
 def content_hash(m):
-    """The hash of a piece: a decoded message of kind TOPICS, BRICK, CERTAINTY, PICTURE or EDIT."""
+    """The hash of a piece: a decoded message of kind TOPICS, BRICK, CERTAINTY, PICTURE, SETTINGS or EDIT."""
     if m["kind"] == "EDIT":
         own = edit_hash(m)
         return hash_of([OPERATORS, 4, m["counter"], _signed(own >> 32), _signed(own & 0xFFFFFFFF), 0, 0, 0, 1, own])
+    if m["kind"] == "SETTINGS":
+        edge = struct.unpack(">q", struct.pack(">d", m["cell_size_m"]))[0]
+        return hash_of([m["robot"], 6, 0, 0, 0, m["epoch"], 0, 0, 1, m["words"], m["hyperparameters"], edge])
     number = {"TOPICS": 1, "BRICK": 2, "CERTAINTY": 3, "PICTURE": 5}[m["kind"]]
     index = (m["topic"], m.get("example", 0), 0) if number in (1, 5) else (m["brick_x"], m["brick_y"], m["brick_z"])
     values = [m["robot"], number, *index, m["epoch"], m["observation"], m["part"], m["num_parts"]]

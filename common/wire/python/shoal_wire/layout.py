@@ -35,17 +35,18 @@ FIELDS = {
         ("other_robot", "h"), ("other_epoch", "i"), ("other_topic", "h"), ("undone", "i")],
     "PICTURE": _PIECE + [
         ("topic", "h"), ("example", "B"), ("cell_x", "i"), ("cell_y", "i"), ("cell_z", "i"), ("seen", "q")],
+    "SETTINGS": [("robot", "h"), ("epoch", "i"), ("words", "q"), ("hyperparameters", "q"), ("cell_size_m", "d")],
     "REQUEST": [],
     "REPAIR": [("piece_kind", "B")],
     "MAP": [("map_digest", "q"), ("chunk", "i"), ("num_chunks", "i")] + _BRICK + [("fused_cells", "h")],
 }
 LAYOUT = {kind: struct.Struct(">qqiB" + "".join(code for _, code in fields) + "Hi") for kind, fields in FIELDS.items()}
 _LCM_TYPE = {"q": "int64_t", "i": "int32_t", "h": "int16_t", "B": "byte", "d": "double", "f": "float"}
-PIECE_KINDS = {1: "TOPICS", 2: "BRICK", 3: "CERTAINTY", 4: "EDIT", 5: "PICTURE"}  # of repairs
+PIECE_KINDS = {1: "TOPICS", 2: "BRICK", 3: "CERTAINTY", 4: "EDIT", 5: "PICTURE", 6: "SETTINGS"}  # of repairs
 TRAFFIC_CLASSES = ["heartbeat", "matches", "topics", "bricks", "certainty", "pictures", "local"]
 OPERATIONS = ["name", "link", "unlink", "exclude", "undo"]
 PHASES = ["flying", "landed", "leaving", "node"]
-UNSIGNED = {"own_digest", "state_digest", "map_digest", "map_of_state", "vocabulary"}
+UNSIGNED = {"own_digest", "state_digest", "map_digest", "map_of_state", "vocabulary", "words", "hyperparameters"}
 
 
 def fingerprint(members):

@@ -67,6 +67,8 @@ def decode(data):
 
 def pieces_of(m):
     """The pieces of state in a decoded message of a kind of pieces but EDIT, as content_hash() takes them."""
+    if m["kind"] == "SETTINGS":
+        return [{"part": 0, "num_parts": 1, **m}]
     if m["kind"] in ("TOPICS", "PICTURE"):
         return [m]
     return [{"kind": m["kind"], "robot": m["robot"], "epoch": m["epoch"], **brick}
@@ -76,6 +78,8 @@ def pieces_of(m):
 def keys_of(data):
     """(index, version, part) of each of pieces_of(decode(data)), without decoding all of it."""
     m, payload = unframe(data)
+    if m["kind"] == "SETTINGS":
+        return [((0,), (m["epoch"], 0), 0)]
     if m["kind"] in ("TOPICS", "PICTURE"):
         return [((m["topic"], m.get("example", 0)), (m["epoch"], m["observation"]), m["part"])]
     count = m["bricks" if m["kind"] == "BRICK" else "certain_bricks"]

@@ -70,6 +70,8 @@ class Mission:
                 m = decode(data)
                 held = self.heartbeats.get(node, m)
                 if (m["epoch"], m["utime"]) >= (held["epoch"], held["utime"]):
+                    if m["epoch"] > held["epoch"]:
+                        self._usable, self._digests = None, {}
                     self.heartbeats[node] = m
             elif kind == "REPAIR":  # whoever made the piece, any node may say it again
                 data = repaired(*unframe(data))
@@ -78,7 +80,7 @@ class Mission:
                     self._hear_edit(data)
                 else:
                     self._hear_piece(m, data)
-            elif kind in ("TOPICS", "BRICK", "CERTAINTY", "PICTURE"):
+            elif kind in ("TOPICS", "BRICK", "CERTAINTY", "PICTURE", "SETTINGS"):
                 require(robot_name(m["robot"]) == node, node, "wrong sender")
                 self._hear_piece(m, data)
             elif kind == "EDIT":  # whoever made it, any node may say it
@@ -106,7 +108,7 @@ class Mission:
         self._digests = {}
 
     def _epochs(self):
-        """{robot: its newest epoch of which any good part has come}."""
+        """{robot: its newest epoch of which any good part or a heartbeat has come}."""
         said = collections.defaultdict(lambda: collections.defaultdict(list))  # robot -> epoch -> what it said in it
         for (robot, *_), versions in self._versions.items():
             for (epoch, _), raw in versions.items():
@@ -116,6 +118,8 @@ class Mission:
             candidates = sorted(epochs, reverse=True)
             newest[robot] = next((epoch for epoch in candidates[:-1] if any([self._parts(raw) for raw in epochs[epoch]])),
                                  candidates[-1])
+            if (said_last := self.heartbeats.get(robot_name(robot))) is not None:
+                newest[robot] = max(newest[robot], said_last["epoch"])
         return newest
 
     def pieces(self):
@@ -237,6 +241,16 @@ class Mission:
                 excluded.add(robot_name(m["robot"]))
         return sorted(excluded)
 
+    def _of_other_cells(self):
+        """Names of the robots whose cells are of another size than most robots'."""
+        said = {robot: (m["words"], m["hyperparameters"], m["cell_size_m"])
+                for robot, kind, _, parts in self.pieces() if kind == "SETTINGS" for m in parts.values()}
+        counted = [settings for robot, settings in sorted(said.items()) if robot_name(robot) not in self.excluded()]
+        if not counted:
+            return []
+        common = max(counted, key=counted.count)  # the first among equals
+        return [robot_name(robot) for robot, settings in said.items() if settings[2] != common[2]]
+
     def nodes_with_maps(self):
         return sorted({node for node, _ in self._lists})
 
@@ -270,7 +284,7 @@ class Mission:
         """A cell shows what the robot that saw it last says; of two at the same time, the higher number."""
         label_of = {(robot, topic): label for robot, topic, label in correspondences}
         cells = {}
-        for name in set(self.robots()) - set(self.excluded()):
+        for name in set(self.robots()) - set(self.excluded()) - set(self._of_other_cells()):
             robot = int(name[1:])
             for cell, (topic, seen_us, steps) in self.cells(name).items():
                 if cell not in cells or (cells[cell][2], cells[cell][1]) < (seen_us, robot):

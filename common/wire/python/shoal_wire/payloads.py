@@ -235,6 +235,12 @@ def _read_picture(m, payload):
     m["layer"] = list(payload)
 
 
+def _read_settings(m, payload):
+    require(not payload, "settings have no payload", "bad payload")
+    require(0 <= m["robot"] <= MAX_ROBOT and m["epoch"] >= 0, "robot or epoch")
+    require(math.isfinite(m["cell_size_m"]) and m["cell_size_m"] > 0, "cell_size_m")
+
+
 def _read_edit(m, payload):
     require(m["operation"] < len(OPERATIONS), "operation")
     fields = {name: m.pop(name) for name in ("robot", "epoch", "topic", "other_robot", "other_epoch", "other_topic",
@@ -298,4 +304,4 @@ def _read_request(m, payload):
 
 READ = {"HEARTBEAT": _read_heartbeat, "TOPICS": _read_topics, "BRICK": _read_bricks, "CERTAINTY": _read_certainties,
         "MATCHES": _read_matches, "LABELS": _read_labels, "MAP": _read_map,
-        "EDIT": _read_edit, "PICTURE": _read_picture, "REQUEST": _read_request}
+        "EDIT": _read_edit, "PICTURE": _read_picture, "SETTINGS": _read_settings, "REQUEST": _read_request}
