@@ -7,6 +7,8 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include "operator_console/xml_text.h"
+
 namespace shoal::console {
 namespace {
 
@@ -36,23 +38,6 @@ std::string number(double value) { return fmt::format("{:g}", std::round(value *
 
 }  // namespace
 
-std::string escaped(const std::string& text) {
-  std::string safe;
-  for (const char c : text) {
-    if (c == '&')
-      safe += "&amp;";
-    else if (c == '<')
-      safe += "&lt;";
-    else if (c == '>')
-      safe += "&gt;";
-    else if (c == '"')
-      safe += "&quot;";
-    else
-      safe += c;
-  }
-  return safe;
-}
-
 std::string svg(const LinePlot& plot) {
   double most_x = 0, most_y = 0, least_y = 0;
   for (const Series& s : plot.series) {
@@ -72,7 +57,7 @@ std::string svg(const LinePlot& plot) {
   std::string out = fmt::format(
       "<svg viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\"><text x=\"{}\" y=\"18\" "
       "class=\"title\">{}</text>\n",
-      kWidth, kHeight, escaped(plot.title), kLeft, escaped(plot.title));
+      kWidth, kHeight, xmlText(plot.title), kLeft, xmlText(plot.title));
   for (double value = y.low; value <= y.high + step_y / 2; value += step_y) {
     out += fmt::format(
         "<line x1=\"{:.1f}\" x2=\"{:.1f}\" y1=\"{:.1f}\" y2=\"{:.1f}\" class=\"grid\"/><text x=\"{:.1f}\" "
@@ -88,7 +73,7 @@ std::string svg(const LinePlot& plot) {
       "<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text><text transform=\"translate(14 "
       "{:.1f}) "
       "rotate(-90)\" text-anchor=\"middle\">{}</text>\n",
-      (x.from + x.to) / 2, kHeight - 10, escaped(plot.x_name), (y.from + y.to) / 2, escaped(plot.y_name));
+      (x.from + x.to) / 2, kHeight - 10, xmlText(plot.x_name), (y.from + y.to) / 2, xmlText(plot.y_name));
   for (size_t k = 0; k < plot.series.size(); ++k) {
     const Series& s = plot.series[k];
     const char* color = kColors[k % kColors.size()];
@@ -110,7 +95,7 @@ std::string svg(const LinePlot& plot) {
         "<line x1=\"{0:.1f}\" x2=\"{1:.1f}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\" stroke=\"{3}\" "
         "stroke-width=\"2\"{4}/>"
         "<text x=\"{5:.1f}\" y=\"{6:.1f}\">{7}</text>\n",
-        x.to + 12, x.to + 34, row, color, dash, x.to + 40, row + 4, escaped(s.name));
+        x.to + 12, x.to + 34, row, color, dash, x.to + 40, row + 4, xmlText(s.name));
   }
   return out + "</svg>\n";
 }

@@ -22,7 +22,4 @@ struct LinePlot {
 /// colour blind. Pure.
 std::string svg(const LinePlot& plot);
 
-/// Text made safe for HTML and SVG.
-std::string escaped(const std::string& text);
-
 }  // namespace shoal::console

@@ -11,6 +11,7 @@
 #include "operator_console/bar.h"
 #include "operator_console/base64.h"
 #include "operator_console/line_plot.h"
+#include "operator_console/xml_text.h"
 #include "shoal/eval/statistics.h"
 #include "shoal/mapping/atomic_file.h"
 #include "shoal/rounded.h"
@@ -229,13 +230,13 @@ std::string html(const Reproduction& all) {
       "K. Khosoussi, J. P. How, Y. Girdhar, ICRA 2021. AMI is adjusted mutual information with the truth, "
       "normalised by the larger "
       "entropy: 1 is a perfect map, 0 a random one.</p>\n",
-      o.num_robots, o.observations, o.repeats, escaped(o.profile), o.seed, version(), commit());
+      o.num_robots, o.observations, o.repeats, xmlText(o.profile), o.seed, version(), commit());
   for (const WorldResult& world : all.worlds) {
     page += fmt::format(
         "<h2>{}</h2>\n<table><tr><th>matching</th><th>AMI, newest</th><th>deviation</th><th>95 "
         "%</th><th>AMI, all"
         "</th><th>labels</th><th class=\"paper\">paper</th></tr>\n",
-        escaped(world.world));
+        xmlText(world.world));
     const std::vector<Row> rows = rowsOf(all, world);
     double best = -1;
     for (size_t m = 0; m < all.matchers.size(); ++m) best = std::max(best, rows[m].newest.mean);
@@ -245,7 +246,7 @@ std::string html(const Reproduction& all) {
           "<tr{}><td>{}</td><td>{:.3f}</td><td>{:.3f}</td><td>± {:.3f}</td><td>{:.3f}</td><td>{:.1f}</td><td "
           "class=\"paper\">"
           "{}</td></tr>\n",
-          m < all.matchers.size() && r.newest.mean == best ? " class=\"best\"" : "", escaped(r.name),
+          m < all.matchers.size() && r.newest.mean == best ? " class=\"best\"" : "", xmlText(r.name),
           r.newest.mean, r.newest.deviation, r.newest.margin, r.concatenated.mean, r.labels.mean,
           published(world.world, r.name));
     }
@@ -283,7 +284,7 @@ std::string html(const Reproduction& all) {
       page += "<p class=\"note\">Slope of AMI over that of one robot, per 10 robots more:";
       for (size_t m = 0; m < all.matchers.size(); ++m) {
         if (const auto line = trend(world, m)) {
-          page += fmt::format(" {} {:+.3f} ± {:.3f};", escaped(eval::nameOf(all.matchers[m])),
+          page += fmt::format(" {} {:+.3f} ± {:.3f};", xmlText(eval::nameOf(all.matchers[m])),
                               10 * line->slope, 10 * line->slope_margin);
         }
       }
@@ -292,7 +293,7 @@ std::string html(const Reproduction& all) {
     }
     for (const SampleMap& map : world.maps) {
       page += fmt::format("<img alt=\"map by {} beside the truth\" src=\"data:image/png;base64,{}\">\n",
-                          escaped(map.name), base64(map.png));
+                          xmlText(map.name), base64(map.png));
     }
   }
   page += kDifferences;

@@ -10,6 +10,7 @@
 #include "fusion_node/picture_files.h"
 #include "operator_console/render.h"
 #include "operator_console/summary.h"
+#include "operator_console/xml_text.h"
 #include "shoal/world/ids.h"
 
 namespace shoal::console {
@@ -54,29 +55,6 @@ constexpr std::array<TrafficColor, 7> kTraffic = {{{"heartbeat", "#999999"},
                                                    {"pictures", "#009e73"},
                                                    {"repair", "#e69f00"}}};
 
-std::string escaped(const std::string& text) {
-  std::string safe;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        safe += "&amp;";
-        break;
-      case '<':
-        safe += "&lt;";
-        break;
-      case '>':
-        safe += "&gt;";
-        break;
-      case '"':
-        safe += "&quot;";
-        break;
-      default:
-        safe += c;
-    }
-  }
-  return safe;
-}
-
 std::string base64(std::string_view bytes) {
   constexpr std::string_view kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text;
@@ -100,7 +78,7 @@ std::string fact(std::string_view what, const std::string& value, std::string_vi
 
 std::string titleOf(const Json& row) {
   const std::string name = row.at("name");
-  return name.empty() ? "label " + std::to_string(row.at("label").get<int>()) : escaped(name);
+  return name.empty() ? "label " + std::to_string(row.at("label").get<int>()) : xmlText(name);
 }
 
 std::string finderOf(const Json& row) {
@@ -178,7 +156,7 @@ std::string link(const MissionSummary& mission) {
                     "<p>Budget {} bytes per second and process, all headers counted. Worst window: {} sent "
                     "{} bytes in {:.1f} s "
                     "({:.0f} % of what it might).</p>\n",
-                    budget, escaped(window.at("robot").get<std::string>()), window.at("bytes").get<int64_t>(),
+                    budget, xmlText(window.at("robot").get<std::string>()), window.at("bytes").get<int64_t>(),
                     window.at("length_s").get<double>(),
                     100 * window.at("bytes").get<double>() /
                         std::max(1.0, static_cast<double>(budget) * window.at("length_s").get<double>()));
@@ -210,7 +188,7 @@ std::string link(const MissionSummary& mission) {
     text += fmt::format(
         "<tr><td>{}</td><td>{}</td><td><div class=\"bar\">{}</div></td><td>{}</td><td>{}</td><td>{}</td>"
         "<td>{}</td><td>{}</td></tr>\n",
-        escaped(node.at("name").get<std::string>()), sum(bytes), bar,
+        xmlText(node.at("name").get<std::string>()), sum(bytes), bar,
         ofRobots(node.at("observation").get<int>() + 1), node.at("cells").get<int>(),
         ofRobots(node.at("topics").get<int>()), node.at("rejected").get<int>(),
         node.at("conflicts").get<int>());
@@ -238,7 +216,7 @@ std::string faults(const MissionSummary& mission) {
   text += line(v.at("digests_equal"), v.at("digests_equal").get<bool>()
                                           ? "All nodes ended with the same state and map."
                                           : "Nodes ended with different states or maps.");
-  for (const Json& wrong : v.at("wrong")) text += line(false, escaped(wrong.get<std::string>()));
+  for (const Json& wrong : v.at("wrong")) text += line(false, xmlText(wrong.get<std::string>()));
   return text + "</ul>\n";
 }
 
@@ -249,7 +227,7 @@ std::string scores(const MissionSummary& mission) {
   std::string text =
       "<h2>Against the truth</h2>\n<table><tr><th>matcher</th><th>AMI</th><th>labels</th></tr>\n";
   for (const auto& [name, score] : matchers.items()) {
-    text += fmt::format("<tr><td>{}{}</td><td>{:.3f}</td><td>{}</td></tr>\n", escaped(name),
+    text += fmt::format("<tr><td>{}{}</td><td>{:.3f}</td><td>{}</td></tr>\n", xmlText(name),
                         name == flown ? " (flown)" : "", score.value("ami", 0.0), score.value("labels", 0));
   }
   text += "</table>\n";
@@ -264,7 +242,7 @@ std::string scores(const MissionSummary& mission) {
 
 std::string summaryHtml(const MissionSummary& mission) {
   const Json& f = mission.facts;
-  const std::string world = escaped(f.at("world").get<std::string>());
+  const std::string world = xmlText(f.at("world").get<std::string>());
   std::string page = fmt::format(
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
       "content=\"width=device-width, "
@@ -273,8 +251,8 @@ std::string summaryHtml(const MissionSummary& mission) {
   page += fmt::format(
       "<h1>Mission {}</h1>\n<p class=\"note\">{}, {} images a robot, link {}, seed {}, commit {}</p>\n",
       f.at("mission_id").get<int64_t>(), world, f.at("observations").get<int64_t>(),
-      escaped(f.at("link").get<std::string>()), f.at("seed").get<uint64_t>(),
-      escaped(f.at("commit").get<std::string>()));
+      xmlText(f.at("link").get<std::string>()), f.at("seed").get<uint64_t>(),
+      xmlText(f.at("commit").get<std::string>()));
   page += facts(mission);
   if (!mission.map_png.empty())
     page += "<h2>The map</h2>\n" + image(mission.map_png, " class=\"map\"", "the fused map") + "\n";

@@ -59,9 +59,9 @@ std::string labelsCsv(const GlobalMap& map, const world::Grid& grid) {
   for (const LabelSummary& row : map.labels) {
     std::string robots;
     for (const world::RobotId robot : row.robots) robots += (robots.empty() ? "" : ";") + name(robot);
-    csv += std::to_string(number(row.label)) + ',' + mapping::quoted(row.name) + ',' + std::to_string(row.cells) +
-           ',' + fixed(area.at(row.label), 3) + ',' + robots + ',' + fixed(row.first_seen.seconds(), 3) +
-           '\n';
+    csv += std::to_string(number(row.label)) + ',' + mapping::quoted(row.name) + ',' +
+           std::to_string(row.cells) + ',' + fixed(area.at(row.label), 3) + ',' + robots + ',' +
+           fixed(row.first_seen.seconds(), 3) + '\n';
   }
   return csv;
 }

@@ -8,8 +8,8 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include "operator_console/export/xml_text.h"
 #include "operator_console/render.h"
+#include "operator_console/xml_text.h"
 #include "shoal/mapping/area_answer.h"
 
 namespace shoal::console {

@@ -18,8 +18,8 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include "operator_console/export/xml_text.h"
 #include "operator_console/render.h"
+#include "operator_console/xml_text.h"
 
 namespace shoal::console {
 namespace {

@@ -6,8 +6,8 @@
 
 namespace shoal::console {
 
-/// UTF-8 text as it stands in XML, between tags or in quotes. Control characters, which XML 1.0 cannot hold,
-/// become spaces.
+/// UTF-8 text as it stands in XML, SVG and HTML, between tags or in quotes. Control characters, which XML 1.0
+/// cannot hold, become spaces.
 inline std::string xmlText(std::string_view text) {
   std::string xml;
   for (const char c : text) {
