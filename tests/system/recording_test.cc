@@ -172,7 +172,7 @@ TEST(VerifyTest, SaysWhoDisagreesAndWhoDoesNotBelong) {
   mission.beat("R05", stranger, 13);
   const Verification result = mission.verified();
   EXPECT_EQ(result.wrong(), (Lines{"OPERATOR made another map than BASE from the same state",
-                                   "mission 78 is in the recording too"}));
+                                   "mission 78 is heard on the same URL"}));
   EXPECT_FALSE(result.agreed_s);
 }
 
