@@ -22,8 +22,8 @@ MessageKind kindOf(const mapping::Piece& piece);
 /// mapping/piece.h and the caps of limits.h. Costs a pass over the piece.
 std::string fault(const mapping::Piece& piece);
 
-/// A piece as a message of type topics_t, bricks_t, certainties_t, picture_t, settings_t or edit_t. Lossless; equal pieces (mission,
-/// time) are equal bytes.
+/// A piece as a message of type topics_t, bricks_t, certainties_t, picture_t, settings_t or edit_t. Lossless;
+/// equal pieces (mission, time) are equal bytes.
 ///
 /// @param mission  Id of the mission.
 /// @param time     Mission time of sending, in [0, kMaxTimeUs].

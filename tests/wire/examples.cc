@@ -179,8 +179,7 @@ std::vector<Example> goldenExamples() {
   for (const auto& [name, piece] : pictures()) {
     examples.push_back({name, MessageKind::kPicture, encode(piece, kMission, time)});
   }
-  const Piece settings =
-      mapping::pieceOf(RobotId{3}, 1, {0xfedcba9876543210ULL, 0x0123456789abcdefULL, 0.8});
+  const Piece settings = mapping::pieceOf(RobotId{3}, 1, {0xfedcba9876543210ULL, 0x0123456789abcdefULL, 0.8});
   examples.push_back({"settings", MessageKind::kSettings, encode(settings, kMission, time)});
   examples.push_back({"repair_settings", MessageKind::kRepair, encodeRepair(settings, kMission, time)});
   for (const auto& [name, edit] : edits()) {
