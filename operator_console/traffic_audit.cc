@@ -4,11 +4,6 @@
 #include <algorithm>
 
 namespace shoal::console {
-namespace {
-
-double seconds(int64_t us) { return static_cast<double>(us) * 1e-6; }
-
-}  // namespace
 
 void TrafficAudit::hear(const std::string& node, const wire::Header& header, const comms::Packet& packet,
                         const wire::Heartbeat* heartbeat) {
@@ -39,7 +34,8 @@ std::vector<Gap> TrafficAudit::gapsOf(const Life& life) {
   Claim before{0, 0};
   for (const Claim& claim : claims) {
     if (claim.lacking > before.lacking) {
-      gaps.push_back({seconds(before.at_us), seconds(claim.at_us), claim.lacking - before.lacking});
+      gaps.push_back({world::Timestamp{before.at_us}.seconds(), world::Timestamp{claim.at_us}.seconds(),
+                      claim.lacking - before.lacking});
       before.lacking = claim.lacking;
     }
     before.at_us = claim.at_us;

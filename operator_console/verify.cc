@@ -16,8 +16,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-double seconds(int64_t us) { return static_cast<double>(us) * 1e-6; }
-
 int64_t bytesLacking(const NodeTraffic& node) {
   int64_t bytes = 0;
   for (const Gap& gap : node.gaps) bytes += gap.bytes;
@@ -63,8 +61,8 @@ std::vector<std::string> Verification::wrong() const {
   for (const NodeTraffic& node : traffic) {
     if (node.worst.within_budget) continue;
     lines.push_back(fmt::format("{} sent {} bytes in {:.3f} s from {:.3f} s on, over its budget of {} B/s",
-                                node.node, node.worst.bytes, seconds(node.worst.length_us),
-                                seconds(node.worst.start_us), node.budget));
+                                node.node, node.worst.bytes, world::Timestamp{node.worst.length_us}.seconds(),
+                                world::Timestamp{node.worst.start_us}.seconds(), node.budget));
   }
   for (const std::string& line : lacking) lines.push_back("not in the recording: " + line);
   lines.insert(lines.end(), disagreements.begin(), disagreements.end());
@@ -93,8 +91,8 @@ Json Verification::json() const {
                      {"bytes", node.bytes},
                      {"datagrams", node.datagrams},
                      {"worst_window",
-                      {{"start_s", seconds(node.worst.start_us)},
-                       {"length_s", seconds(node.worst.length_us)},
+                      {{"start_s", world::Timestamp{node.worst.start_us}.seconds()},
+                       {"length_s", world::Timestamp{node.worst.length_us}.seconds()},
                        {"bytes", node.worst.bytes},
                        {"datagrams", node.worst.datagrams},
                        {"share", node.worst.share},
@@ -135,7 +133,8 @@ std::string Verification::text() const {
   for (const NodeTraffic& node : traffic) {
     text += fmt::format("{:<10} {:>10} {:>10} {:>10} {:>10} {:>10.3f} {:>12} {:>6} {:>12}\n", node.node,
                         node.budget, node.bytes, node.datagrams, node.worst.bytes,
-                        seconds(node.worst.length_us), shareText(node), node.gaps.size(), bytesLacking(node));
+                        world::Timestamp{node.worst.length_us}.seconds(), shareText(node), node.gaps.size(),
+                        bytesLacking(node));
   }
   text += fmt::format("\nbudget: {}\n", budgetKept() ? "kept in every window" : "NOT kept");
   text += fmt::format("gaps: {}\n", lacking.empty() ? "nothing lacks in the end" : "NOT repaired");
