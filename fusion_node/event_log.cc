@@ -57,6 +57,7 @@ void EventLog::passTime(double wall_s) {
 void EventLog::heard(const std::string& name, const wire::Heartbeat& h) {
   const double at_s = h.time.seconds();
   latest_s_ = std::max(latest_s_, at_s);
+  twins_.heard(name, h);
   const auto found = nodes_.find(name);
   if (found == nodes_.end()) {
     if (nodes_.size() >= kMaxNodes) return;
@@ -73,8 +74,8 @@ void EventLog::heard(const std::string& name, const wire::Heartbeat& h) {
   if (h.epoch > node.last.epoch) {
     add(at_s, "again", name, fmt::format("began anew, epoch {}: what it said before is void", h.epoch));
     node.twin = false;
-  } else if (node.last.pid != 0 && (h.pid != node.last.pid || h.host != node.last.host) && !node.twin) {
-    add(at_s, "twin", name, fmt::format("process {} speaks as {}, as {} did", h.pid, name, node.last.pid));
+  } else if (!node.twin && twins_.hasTwin(name)) {
+    add(at_s, "twin", name, fmt::format("processes {} and {} speak as {}", node.last.pid, h.pid, name));
     node.twin = true;
   }
   if (!is_newer) return;

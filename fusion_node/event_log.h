@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "fusion_node/twin_watch.h"
 #include "shoal/comms/stats.h"
 #include "shoal/mapping/events_answer.h"
 #include "shoal/wire/heartbeat_codec.h"
@@ -44,6 +45,7 @@ class EventLog {
   void add(double at_s, std::string kind, std::string node, std::string says);
 
   std::map<std::string, Node> nodes_;
+  TwinWatch twins_;
   std::map<std::string, uint64_t> refusals_;                      // by reason, as last seen
   std::map<std::pair<std::string, std::string>, uint64_t> told_;  // by channel and reason
   std::deque<mapping::MissionEvent> events_;

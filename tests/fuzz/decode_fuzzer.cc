@@ -22,7 +22,7 @@ using shoal::wire::MessageKind;
 size_t documentedBytesOf(MessageKind kind) {
   for (const auto& example : shoal::wire::goldenExamples()) {
     if (example.kind != kind) continue;
-    for (size_t fixed = 27; fixed < example.bytes.size(); ++fixed) {  // where the length that fits stands
+    for (size_t fixed = 27; fixed <= example.bytes.size(); ++fixed) {  // where the length that fits stands
       const auto length = std::span(example.bytes).subspan(fixed - 4, 4);
       if (shoal::wire::bigEndian(length) == example.bytes.size() - fixed) return fixed;
     }

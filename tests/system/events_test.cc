@@ -57,8 +57,14 @@ TEST(EventLogTest, OnAThinBudgetPatienceIsLonger) {
 TEST(EventLogTest, TwoProcessesWithOneNameAreTold) {
   EventLog log;
   log.heard("R01", at(1));
-  for (int i = 0; i < 5; ++i) log.heard("R01", at(2 + i, wire::Phase::kFlying, 0, i % 2));
+  for (int i = 0; i < 9; ++i) log.heard("R01", at(2 + i, wire::Phase::kFlying, 0, 1 + i % 2));
   EXPECT_EQ(kinds(log), (std::vector<std::string>{"joined", "twin"}));
+}
+
+TEST(EventLogTest, WhoTakesUpWhereAnotherEndedIsNoTwin) {
+  EventLog log;
+  for (int i = 0; i < 9; ++i) log.heard("R01", at(1 + i, wire::Phase::kFlying, 0, 1 + i / 3));
+  EXPECT_EQ(kinds(log), (std::vector<std::string>{"joined"}));
 }
 
 TEST(EventLogTest, RefusalsAreToldAtPowersOfTenAndStayBounded) {
