@@ -9,7 +9,7 @@
 namespace shoal::console {
 namespace {
 
-// Commands that are for people: those that are not built yet stand in no group.
+// Commands that are for people; others stand in no group.
 std::vector<const CLI::App*> commandsOf(const CLI::App& app) {
   std::vector<const CLI::App*> commands;
   for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {

@@ -40,7 +40,7 @@ struct LaunchOptions {
   std::string log_level = "info";
 };
 
-/// @throws std::invalid_argument naming the option that is wrong or not built yet, and what would be right.
+/// @throws std::invalid_argument naming the option that is wrong, and what would be right.
 void check(const LaunchOptions& options);
 
 /// The same with the number of robots, the cell size and the altitude that the place says where they were

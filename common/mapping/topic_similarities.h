@@ -12,7 +12,7 @@ namespace shoal::mapping {
 /// `stacked` outlives it.
 using VertexSimilarity = std::function<double(int, int)>;
 
-/// @throws std::invalid_argument for a similarity that is not built.
+/// @throws std::invalid_argument for a similarity that does not exist.
 VertexSimilarity similarityOf(const StackedTopics& stacked, const matching::MatcherOptions& options);
 
 }  // namespace shoal::mapping

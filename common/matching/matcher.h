@@ -30,7 +30,7 @@ struct MatcherOptions {
   bool keepsOwnApart() const { return distinct.value_or(!mergesOwn(matcher)); }
 };
 
-/// @throws std::invalid_argument naming the option that is wrong or not built, and what would be right.
+/// @throws std::invalid_argument naming the option that is wrong, and what would be right.
 void check(const MatcherOptions& options);
 
 /// Matchers that are built: "id", "hungarian", "incremental", "components", "clear", "shoal".
