@@ -22,6 +22,7 @@
 #include "shoal/mapping/judgement.h"
 #include "shoal/mapping/map_files.h"
 #include "shoal/mapping/questions.h"
+#include "shoal/mapping/surprises.h"
 #include "shoal/wire/labels_codec.h"
 #include "shoal/wire/map_codec.h"
 #include "shoal/wire/matches_codec.h"
@@ -375,6 +376,9 @@ void Node::finish() {
   mapping::writeFileAtomically(options_.out_dir + "/global_map.csv",
                                mapping::globalMapCsv(state_.map(), grid));
   mapping::writeFileAtomically(options_.out_dir + "/labels.csv", mapping::labelsCsv(state_.map(), grid));
+  mapping::writeFileAtomically(
+      options_.out_dir + "/surprise.csv",
+      mapping::surprisesCsv(mapping::surprisesOf(state_.map(), state_.beliefs()), grid));
   if (const auto edits = mapping::editsOf(state_.beliefs()); !edits.empty()) {
     mapping::writeFileAtomically(options_.out_dir + "/edits.json",
                                  mapping::editsJson(options_.mission, edits));

@@ -16,10 +16,6 @@ bool isRobot(const Nodes::value_type& node) {
 
 bool fuses(const wire::Heartbeat& node) { return node.phase == wire::Phase::kNode || node.map_of_state != 0; }
 
-bool hasLanded(const wire::Heartbeat& robot) {
-  return robot.phase == wire::Phase::kLanded || robot.phase == wire::Phase::kLeaving;
-}
-
 bool holdsWhole(const wire::Heartbeat& fusing, const Nodes::value_type& robot) {
   if (robot.second.own_digest == 0) return true;  // it has nothing to say
   const auto share =
@@ -44,6 +40,10 @@ double furthestClock(const Nodes& nodes) {
 }
 
 }  // namespace
+
+bool hasLanded(const wire::Heartbeat& robot) {
+  return robot.phase == wire::Phase::kLanded || robot.phase == wire::Phase::kLeaving;
+}
 
 std::vector<std::string> disagreements(const Nodes& nodes) {
   std::vector<std::string> lines;

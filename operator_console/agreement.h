@@ -10,6 +10,9 @@
 
 namespace shoal::console {
 
+/// Whether a robot has seen all that it was to see.
+bool hasLanded(const wire::Heartbeat& robot);
+
 /// What keeps the nodes of a mission from agreeing, from the last heartbeat of each: robots that have not
 /// landed, nodes that fuse and do not hold all that a robot has, have not fused what they hold, or hold
 /// another state or another map than the first of them. One line an item; empty when all agree.

@@ -22,6 +22,7 @@ void addQuestionCommands(CLI::App& app, Action& chosen);
 void addStatusCommand(CLI::App& app, Action& chosen);
 /// area LABEL: patches as table, CSV, GeoJSON or JSON.
 void addAreaCommand(CLI::App& app, Action& chosen);
+void addSurprisesCommand(CLI::App& app, Action& chosen);
 /// why LABEL: what speaks for a label's topics being one.
 void addWhyCommand(CLI::App& app, Action& chosen);
 /// diff T1 T2: what changed on the map, from a recording.

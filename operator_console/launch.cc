@@ -42,16 +42,15 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
-using std::chrono::seconds;
 
 constexpr milliseconds kListenFirst{1500};  // a heartbeat comes about once a second
 constexpr milliseconds kRedraw{250};
-constexpr seconds kPatience{5};            // between SIGTERM and SIGKILL when interrupted
-constexpr seconds kWriting{60};            // for writing files at the end
-constexpr seconds kStarting{20};           // for the logger and the fusion node to be there
-constexpr milliseconds kLoggerFlush{500};  // lcm-logger flushes every 100 ms
-constexpr milliseconds kLogCheck{2000};    // between two looks at the recording
-constexpr int kMaxCrashes = 3;             // of one process, unplanned
+constexpr std::chrono::seconds kPatience{5};   // between SIGTERM and SIGKILL when interrupted
+constexpr std::chrono::seconds kWriting{60};   // for writing files at the end
+constexpr std::chrono::seconds kStarting{20};  // for the logger and the fusion node to be there
+constexpr milliseconds kLoggerFlush{500};      // lcm-logger flushes every 100 ms
+constexpr milliseconds kLogCheck{2000};        // between two looks at the recording
+constexpr int kMaxCrashes = 3;                 // of one process, unplanned
 
 struct Interrupted {
   int signal;

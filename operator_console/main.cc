@@ -38,6 +38,7 @@ int main(int argc, char** argv) {
   console::addTuneCommand(app, chosen);
   console::addQuestionCommands(app, chosen);
   console::addAreaCommand(app, chosen);
+  console::addSurprisesCommand(app, chosen);
   console::addWhyCommand(app, chosen);
   console::addDiffCommand(app, chosen);
   console::addNodeCommand(app, chosen);

@@ -15,8 +15,6 @@
 namespace shoal::console {
 namespace {
 
-using nlohmann::json;
-
 constexpr int kMaxDepth = 16;
 constexpr int64_t kMaxLabelsOfARobot = 10'000;  // topic ids are below this
 constexpr int64_t kMaxRobots = 100'000;
@@ -24,19 +22,19 @@ constexpr int64_t kMaxLabels = 200'000;
 
 [[noreturn]] void fail(const std::string& what) { throw std::invalid_argument(what); }
 
-std::string shown(const json& value) {
-  std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
+std::string shown(const nlohmann::json& value) {
+  std::string text = value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   return text.size() <= 40 ? text : text.substr(0, 37) + "...";
 }
 
 std::string element(const std::string& place, size_t i) { return place + "[" + std::to_string(i) + "]"; }
 
-const json& array(const json& value, const std::string& place) {
+const nlohmann::json& array(const nlohmann::json& value, const std::string& place) {
   if (!value.is_array()) fail(place + " must be a list, got " + shown(value));
   return value;
 }
 
-int64_t whole(const json& value, const std::string& place, int64_t least, int64_t most) {
+int64_t whole(const nlohmann::json& value, const std::string& place, int64_t least, int64_t most) {
   const bool fits = value.is_number_unsigned() ? value.get<uint64_t>() <= static_cast<uint64_t>(most)
                                                : value.is_number_integer() && value.get<int64_t>() <= most;
   if (!fits || value.get<int64_t>() < least) {
@@ -46,7 +44,7 @@ int64_t whole(const json& value, const std::string& place, int64_t least, int64_
   return value.get<int64_t>();
 }
 
-const json& member(const json& object, const char* key, const std::string& place) {
+const nlohmann::json& member(const nlohmann::json& object, const char* key, const std::string& place) {
   if (!object.is_object()) fail(place + " must be an object, got " + shown(object));
   const auto found = object.find(key);
   if (found == object.end()) fail(place + " lacks \"" + key + "\"");
@@ -63,20 +61,20 @@ std::string readAll(std::istream& in, size_t max_bytes) {
   return text;
 }
 
-json parse(const std::string& text) {
+nlohmann::json parse(const std::string& text) {
   std::vector<std::set<std::string>> keys;  // of the objects that are open
-  const auto watch = [&keys](int depth, json::parse_event_t event, json& value) {
+  const auto watch = [&keys](int depth, nlohmann::json::parse_event_t event, nlohmann::json& value) {
     if (depth > kMaxDepth) fail("the input is nested deeper than " + std::to_string(kMaxDepth) + " levels");
-    if (event == json::parse_event_t::object_start) keys.emplace_back();
-    if (event == json::parse_event_t::object_end) keys.pop_back();
-    if (event == json::parse_event_t::key && !keys.back().insert(value.get<std::string>()).second) {
+    if (event == nlohmann::json::parse_event_t::object_start) keys.emplace_back();
+    if (event == nlohmann::json::parse_event_t::object_end) keys.pop_back();
+    if (event == nlohmann::json::parse_event_t::key && !keys.back().insert(value.get<std::string>()).second) {
       fail("key " + shown(value) + " is there twice in one object");
     }
     return true;
   };
   try {
-    return json::parse(text, watch);
-  } catch (const json::exception& e) {
+    return nlohmann::json::parse(text, watch);
+  } catch (const nlohmann::json::exception& e) {
     std::string what = e.what();
     std::replace(what.begin(), what.end(), '\n', ' ');
     fail("not valid JSON: " + what);
@@ -99,9 +97,9 @@ class Limits {
   int64_t num_labels_ = 0;
 };
 
-matching::AssociationGraph readGraph(const json& root, MatchInput& input) {
+matching::AssociationGraph readGraph(const nlohmann::json& root, MatchInput& input) {
   matching::AssociationGraph graph;
-  const json& counts = array(member(root, "counts", "the input"), "counts");
+  const nlohmann::json& counts = array(member(root, "counts", "the input"), "counts");
   Limits limits;
   for (size_t r = 0; r < counts.size(); ++r) {
     const std::string place = element("counts", r);
@@ -114,7 +112,7 @@ matching::AssociationGraph readGraph(const json& root, MatchInput& input) {
   const std::vector<int> owner = matching::owners(graph);
   const auto last = static_cast<int64_t>(owner.size()) - 1;
 
-  const json& edges = array(root.at("edges"), "edges");
+  const nlohmann::json& edges = array(root.at("edges"), "edges");
   std::vector<std::pair<std::pair<int, int>, size_t>> pairs;
   size_t num_inside = 0;
   std::string first_inside;
@@ -128,7 +126,7 @@ matching::AssociationGraph readGraph(const json& root, MatchInput& input) {
     const auto b = static_cast<int>(whole(edges[e][1], place + "[1]", 0, last));
     matching::Edge edge{std::min(a, b), std::max(a, b)};
     if (edges[e].size() == 3) {
-      const json& weight = edges[e][2];
+      const nlohmann::json& weight = edges[e][2];
       edge.weight = weight.is_number() ? weight.get<double>() : -1.0;
       if (!(edge.weight >= 0.0) || !std::isfinite(edge.weight)) {
         fail(place + "[2] must be a finite weight >= 0, got " + shown(weight));
@@ -155,7 +153,7 @@ matching::AssociationGraph readGraph(const json& root, MatchInput& input) {
   return graph;
 }
 
-std::vector<int32_t> readGroups(const json& groups, int64_t vocabulary) {
+std::vector<int32_t> readGroups(const nlohmann::json& groups, int64_t vocabulary) {
   std::vector<int32_t> first;
   int64_t next = 0;
   array(groups, "groups");
@@ -172,10 +170,10 @@ std::vector<int32_t> readGroups(const json& groups, int64_t vocabulary) {
   return first;
 }
 
-matching::Descriptor readTopic(const json& topic, const std::string& place, int64_t vocabulary,
+matching::Descriptor readTopic(const nlohmann::json& topic, const std::string& place, int64_t vocabulary,
                                int32_t slot) {
   matching::Descriptor descriptor;
-  const json& words = member(topic, "words", place);
+  const nlohmann::json& words = member(topic, "words", place);
   if (!words.is_object()) fail(place + ".words must be an object, got " + shown(words));
   descriptor.slot = slot;
   if (topic.contains("id")) {
@@ -196,24 +194,24 @@ matching::Descriptor readTopic(const json& topic, const std::string& place, int6
   return descriptor;
 }
 
-std::optional<std::string> readName(const json& root, const char* key) {
+std::optional<std::string> readName(const nlohmann::json& root, const char* key) {
   if (!root.contains(key)) return std::nullopt;
   if (!root[key].is_string()) fail(std::string(key) + " must be a string, got " + shown(root[key]));
   return root[key].get<std::string>();
 }
 
-matching::DescriptorSet readDescriptors(const json& root, MatchInput& input) {
+matching::DescriptorSet readDescriptors(const nlohmann::json& root, MatchInput& input) {
   matching::DescriptorSet set;
   const int64_t vocabulary =
       whole(member(root, "vocabulary", "the input"), "vocabulary", 0, std::numeric_limits<int32_t>::max());
   set.vocabulary_size = static_cast<int32_t>(vocabulary);
   if (root.contains("groups")) set.group_first = readGroups(root["groups"], vocabulary);
-  const json& robots = array(root.at("robots"), "robots");
+  const nlohmann::json& robots = array(root.at("robots"), "robots");
   Limits limits;
   std::set<std::string> names;
   for (size_t r = 0; r < robots.size(); ++r) {
     const std::string place = element("robots", r);
-    const json& topics = array(member(robots[r], "topics", place), place + ".topics");
+    const nlohmann::json& topics = array(member(robots[r], "topics", place), place + ".topics");
     const std::string name = readName(robots[r], "name").value_or("robot " + std::to_string(r));
     if (!names.insert(name).second) {
       fail(place + ": a robot named \"" + name + "\" is there already");
@@ -234,7 +232,7 @@ matching::DescriptorSet readDescriptors(const json& root, MatchInput& input) {
   input.matcher = readName(root, "matcher");
   input.similarity = readName(root, "similarity");
   if (root.contains("sigma")) {
-    const json& sigma = root["sigma"];
+    const nlohmann::json& sigma = root["sigma"];
     if (!sigma.is_number() && sigma != "auto")
       fail("sigma must be \"auto\" or a number in (0, 1], got " + shown(sigma));
     if (sigma.is_number()) input.sigma = sigma.get<double>();
@@ -245,7 +243,7 @@ matching::DescriptorSet readDescriptors(const json& root, MatchInput& input) {
 }  // namespace
 
 MatchInput readMatchInput(std::istream& in, size_t max_bytes) {
-  const json root = parse(readAll(in, max_bytes));
+  const nlohmann::json root = parse(readAll(in, max_bytes));
   if (!root.is_object()) fail("the input must be an object, got " + shown(root));
   MatchInput input;
   if (root.contains("edges")) {

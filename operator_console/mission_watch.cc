@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "operator_console/agreement.h"
 #include "shoal/comms/channels.h"
 #include "shoal/random.h"
 #include "shoal/wire/message_kind.h"
@@ -15,10 +16,6 @@ constexpr const char* kOperator = "OPERATOR";
 
 // A hostile peer must not make us remember without end.
 constexpr size_t kMaxNodes = 600;
-
-bool hasLanded(const wire::Heartbeat& robot) {
-  return robot.phase == wire::Phase::kLanded || robot.phase == wire::Phase::kLeaving;
-}
 
 }  // namespace
 

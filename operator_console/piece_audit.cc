@@ -8,7 +8,7 @@
 namespace shoal::console {
 namespace {
 
-std::string nameOf(const mapping::PieceKey& key) {
+std::string pieceNameOf(const mapping::PieceKey& key) {
   const auto& i = key.index;
   if (key.kind == mapping::PieceKind::kTopic) return "topic " + std::to_string(i[0]);
   if (key.kind == mapping::PieceKind::kPicture) {
@@ -59,14 +59,14 @@ std::vector<std::string> PieceAudit::lacking(world::RobotId robot, const wire::H
     }
     for (int32_t part = 0; part < heard.num_parts; ++part) {
       if (heard.cells.contains(part)) continue;
-      lines.push_back(owner + nameOf(key) + ", part " + std::to_string(part + 1) + " of " +
+      lines.push_back(owner + pieceNameOf(key) + ", part " + std::to_string(part + 1) + " of " +
                       std::to_string(heard.num_parts));
     }
     if (key.kind != mapping::PieceKind::kBrick && key.kind != mapping::PieceKind::kCertainty) continue;
     mapping::PieceKey other = key;
     other.kind =
         key.kind == mapping::PieceKind::kBrick ? mapping::PieceKind::kCertainty : mapping::PieceKind::kBrick;
-    if (!pieces_.contains(other)) lines.push_back(owner + nameOf(other));
+    if (!pieces_.contains(other)) lines.push_back(owner + pieceNameOf(other));
   }
   if (topics < last.num_topics) {
     lines.push_back(owner + std::to_string(last.num_topics - topics) + " of " +

@@ -16,6 +16,7 @@
 #include "shoal/mapping/belief_files.h"
 #include "shoal/mapping/library.h"
 #include "shoal/mapping/map_files.h"
+#include "shoal/mapping/surprises.h"
 
 namespace shoal::console {
 namespace {
@@ -45,19 +46,20 @@ void addOtherMaps(const fusion_node::MissionState& state, std::vector<std::strin
 
 mapping::LocalBelief heardMap(const mapping::BeliefStore& beliefs, world::RobotId robot) {
   std::map<world::CellIndex, mapping::BelievedCell> cells;
-  std::map<world::CellIndex, uint8_t> certainty;
+  std::map<world::CellIndex, mapping::CertaintyCell> certainty;
   beliefs.visit([&](const mapping::Piece& piece) {
     if (piece.key.robot != robot) return;
     if (const auto* brick = std::get_if<mapping::BrickPart>(&piece.content)) {
       for (const mapping::BrickCell& c : brick->cells) cells[c.cell] = {c.cell, c.topic, c.seen, 0};
     } else if (const auto* part = std::get_if<mapping::CertaintyPart>(&piece.content)) {
-      for (const mapping::CertaintyCell& c : part->cells) certainty[c.cell] = c.steps;
+      for (const mapping::CertaintyCell& c : part->cells) certainty[c.cell] = c;
     }
   });
   mapping::LocalBelief belief{.robot = robot, .version = {}, .groups = {}, .topics = {}, .cells = {}};
   for (auto& [index, cell] : cells) {
     if (const auto heard = certainty.find(index); heard != certainty.end()) {
-      cell.certainty = static_cast<float>(heard->second) / static_cast<float>(mapping::kCertaintySteps);
+      cell.certainty = static_cast<float>(heard->second.steps) / static_cast<float>(mapping::kCertaintySteps);
+      cell.surprise = static_cast<float>(heard->second.surprise) / mapping::kSurpriseStepsPerUnit;
     }
     belief.cells.push_back(cell);
   }
@@ -86,6 +88,7 @@ Replay replay(const std::string& log, const std::string& out, const matching::Ma
   };
   write("global_map.csv", mapping::globalMapCsv(state.map(), grid));
   write("labels.csv", mapping::labelsCsv(state.map(), grid));
+  write("surprise.csv", mapping::surprisesCsv(mapping::surprisesOf(state.map(), state.beliefs()), grid));
   const auto pictures = mapping::picturesOfLabels(state.map(), state.beliefs());
   write("global_map.png", encodePng(render(state.map(), grid,
                                            fmt::format("mission {}, {} labels", replay.recorded.mission,
@@ -95,8 +98,9 @@ Replay replay(const std::string& log, const std::string& out, const matching::Ma
     replay.files.push_back("pictures/" + file);
   }
   for (const world::RobotId robot : robotsOf(state)) {
-    write("robots/" + world::name(robot) + "/map.csv",
-          mapping::beliefCsv(heardMap(state.beliefs(), robot), grid));
+    const mapping::LocalBelief heard = heardMap(state.beliefs(), robot);
+    write("robots/" + world::name(robot) + "/map.csv", mapping::beliefCsv(heard, grid));
+    write("robots/" + world::name(robot) + "/surprise.csv", mapping::surpriseCsv(heard, grid));
     const std::string folder = "robots/" + world::name(robot) + "/pictures";
     for (const std::string& file :
          fusion_node::writeTopicPictures(out + "/" + folder, state.beliefs(), robot)) {

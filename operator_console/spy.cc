@@ -20,7 +20,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr size_t kMaxChannels = 1000;
+constexpr size_t kMostChannels = 1000;
 constexpr size_t kMaxRecent = 2000;  // messages of a channel
 constexpr size_t kMaxSent = 20000;   // datagrams of a node, for its worst window
 constexpr double kWindowS = 10;
@@ -53,7 +53,7 @@ void Spy::hear(const comms::Packet& heard, double at_s) {
   const size_t size = comms::wireSize(packet);
   auto found = channels_.find(packet.channel);
   if (found == channels_.end()) {
-    if (channels_.size() >= kMaxChannels) {
+    if (channels_.size() >= kMostChannels) {
       ++unlisted_;
       return;
     }
@@ -78,7 +78,7 @@ bool Spy::hearNode(const comms::Packet& packet) {
   const auto header = wire::peek(packet.bytes);
   if (!header || wire::channelKind(header->kind) != known->kind) return false;
   if (header->kind == wire::MessageKind::kMap) return true;  // stays on its own host
-  if (!nodes_.contains(known->node) && nodes_.size() >= kMaxChannels) return true;
+  if (!nodes_.contains(known->node) && nodes_.size() >= kMostChannels) return true;
   Node& node = nodes_[known->node];
   if (node.bytes == 0) node.first_us = header->time.us;
   node.first_us = std::min(node.first_us, header->time.us);

@@ -20,7 +20,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string nameOf(const Json& row) {
+std::string nodeNameOf(const Json& row) {
   const std::string name = row.at("name");
   return name.empty() ? std::to_string(row.at("label").get<int>()) : name;
 }
@@ -63,7 +63,7 @@ std::string summaryText(const MissionSummary& mission, size_t max_bytes) {
   }
   for (const Json& row : mission.labels) {
     const int label = row.at("label");
-    lines.push_back(fmt::format("{} {:.0f} m2, R{:02} {:.0f} s", nameOf(row), row.at("area_m2").get<double>(),
+    lines.push_back(fmt::format("{} {:.0f} m2, R{:02} {:.0f} s", nodeNameOf(row), row.at("area_m2").get<double>(),
                                 label / 10000, row.at("first_seen_s").get<double>()));
   }
   std::string text;

@@ -36,7 +36,7 @@ constexpr std::chrono::milliseconds kPoll{10};
   close_range(3, ~0U, 0);  // liblcm's sockets would go on collecting datagrams that nobody reads
   execv(program, arguments);
   constexpr std::array message = std::to_array("cannot be run\n");
-  [[maybe_unused]] const ssize_t written = write(2, message.data(), message.size() - 1);
+  [[maybe_unused]] const ssize_t written = ::write(2, message.data(), message.size() - 1);
   _exit(127);
 }
 

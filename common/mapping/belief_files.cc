@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "shoal/mapping/atomic_file.h"
 #include "shoal/mapping/csv.h"
+#include "shoal/mapping/piece.h"
 
 namespace shoal::mapping {
 namespace {
@@ -15,6 +17,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 const std::vector<std::string> kColumns = {"x_m", "y_m", "z_m", "topic", "seen_s", "certainty"};
+const std::vector<std::string> kSurpriseColumns = {"x_m", "y_m", "z_m", "surprise"};
 
 // Four decimals that stand for the same step of 1/63 as the exact number: so the files of a run add up to the
 // map that was made from what travelled.
@@ -82,8 +85,21 @@ std::string beliefCsv(const LocalBelief& belief, const world::Grid& grid) {
   return csv;
 }
 
+std::string surpriseCsv(const LocalBelief& belief, const world::Grid& grid) {
+  std::string csv = "x_m,y_m,z_m,surprise\n";
+  for (const BelievedCell& c : belief.cells) {
+    const uint8_t steps = surpriseSteps(c.surprise);
+    if (steps == 0) continue;
+    const Eigen::Vector3d p = grid.centerOf(c.cell);
+    csv += fixed(p.x(), 3) + ',' + fixed(p.y(), 3) + ',' + fixed(p.z(), 3) + ',' +
+           fixed(static_cast<double>(steps) / kSurpriseStepsPerUnit, 3) + '\n';
+  }
+  return csv;
+}
+
 void writeBelief(const std::string& folder, const LocalBelief& belief, const world::Grid& grid) {
   writeFileAtomically(folder + "/map.csv", beliefCsv(belief, grid));
+  writeFileAtomically(folder + "/surprise.csv", surpriseCsv(belief, grid));
   writeFileAtomically(folder + "/topics.json", topicsJson(belief));
 }
 
@@ -105,6 +121,17 @@ LocalBelief readBelief(const std::string& folder, world::RobotId robot, const wo
                             timeFromSeconds(toReal(row[4], map)), static_cast<float>(toReal(row[5], map))});
   }
   std::ranges::sort(belief.cells, {}, &BelievedCell::cell);
+  const std::string surprises = folder + "/surprise.csv";
+  if (!std::filesystem::exists(surprises)) return belief;
+  for (const auto& row : parseCsv(readFile(surprises), kSurpriseColumns, surprises)) {
+    const world::CellIndex index =
+        grid.cellOf({toReal(row[0], surprises), toReal(row[1], surprises), toReal(row[2], surprises)});
+    const auto cell = std::ranges::lower_bound(belief.cells, index, {}, &BelievedCell::cell);
+    if (cell == belief.cells.end() || cell->cell != index)
+      throw std::runtime_error(surprises + ": (" + row[0] + ", " + row[1] + ", " + row[2] +
+                               ") is no cell of map.csv");
+    cell->surprise = static_cast<float>(toReal(row[3], surprises));
+  }
   return belief;
 }
 

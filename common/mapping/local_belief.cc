@@ -34,4 +34,10 @@ uint8_t certaintySteps(float certainty, Detail detail) {
   return static_cast<uint8_t>(detail == Detail::kFine ? steps : (steps + 4) / 9 * 9);
 }
 
+uint8_t surpriseSteps(float surprise) {
+  const float most = static_cast<float>(kMostSurpriseSteps) / kSurpriseStepsPerUnit;
+  const long steps = std::lround(std::clamp(surprise, 0.f, most) * kSurpriseStepsPerUnit);
+  return steps < kLeastSurpriseSteps ? uint8_t{0} : static_cast<uint8_t>(steps);
+}
+
 }  // namespace shoal::mapping

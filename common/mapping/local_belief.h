@@ -27,6 +27,7 @@ struct BelievedCell {
   world::TopicId topic{};
   world::Timestamp seen;
   float certainty = 0;  ///< in [0, 1]
+  float surprise = 0;   ///< how unusual it was when seen, >= 0; 1 is what one cell in ten exceeds
   bool operator==(const BelievedCell&) const = default;
 };
 
@@ -75,5 +76,9 @@ std::vector<world::WordCount> quantize(const std::vector<world::WordCount>& coun
 
 /// A certainty in [0, 1] in steps of 1/63, fit to travel: of nine steps one when coarse.
 uint8_t certaintySteps(float certainty, Detail detail = Detail::kFine);
+
+/// A surprise in steps of 1/8, fit to travel: 0 below 1.5, so that only what stands out takes bytes, the last
+/// step for all that is above it.
+uint8_t surpriseSteps(float surprise);
 
 }  // namespace shoal::mapping

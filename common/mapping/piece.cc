@@ -37,6 +37,7 @@ class Hasher {
     for (const CertaintyCell& c : part.cells) {
       add(c.cell);
       add(c.steps);
+      add(c.surprise);
     }
   }
   void operator()(const PicturePart& part) {

@@ -70,13 +70,19 @@ struct BrickPart {
 /// Certainties are sent in steps of 1/63.
 inline constexpr int kCertaintySteps = 63;
 
+/// Surprises are sent in steps of 1/8, from 1.5 on: see surpriseSteps().
+inline constexpr int kSurpriseStepsPerUnit = 8;
+inline constexpr int kLeastSurpriseSteps = 12;
+inline constexpr int kMostSurpriseSteps = 63;
+
 struct CertaintyCell {
   world::CellIndex cell;
-  uint8_t steps = 0;  ///< certainty x kCertaintySteps, rounded, in [0, kCertaintySteps]
+  uint8_t steps = 0;     ///< certainty x kCertaintySteps, rounded, in [0, kCertaintySteps]
+  uint8_t surprise = 0;  ///< in steps, 0 or in [kLeastSurpriseSteps, kMostSurpriseSteps]
   auto operator<=>(const CertaintyCell&) const = default;
 };
 
-/// Certainties of some cells of a brick; any part is usable alone.
+/// How certain some cells of a brick are, and which of them surprised; any part is usable alone.
 struct CertaintyPart {
   std::vector<CertaintyCell> cells;  ///< ascending by cell, each once, not empty
   bool operator==(const CertaintyPart&) const = default;

@@ -12,6 +12,7 @@
 #include "shoal/mapping/library.h"
 #include "shoal/mapping/map_files.h"
 #include "shoal/mapping/node_answer.h"
+#include "shoal/mapping/surprises.h"
 #include "shoal/mapping/why_answer.h"
 
 namespace shoal::mapping {
@@ -84,6 +85,13 @@ Json answer(const Witness& witness, const Json& question) {
     if (query == "area") return areaAnswer(view, question.at("label"), filterOf(question));
     if (query == "why") return whyAnswer(view, witness.beliefs(), witness.matcher, question.at("label"));
     if (query == "node") return nodeAnswer(view, witness.beliefs(), question.at("node"));
+    if (query == "surprises") {
+      const BeliefStore& beliefs = witness.beliefs();  // first: of a finished run, it completes the map
+      Json told = surprisesAnswer(view, beliefs, question.value("least", 0.0));
+      if (question.value("csv", false))
+        told["surprise_csv"] = surprisesCsv(surprisesOf(view.map, beliefs), world::Grid(view.cell_size_m));
+      return told;
+    }
     if (query == "edits") return editsAnswer(witness.beliefs());
     if (query == "events") {
       const auto seen = witness.events ? witness.events() : std::vector<MissionEvent>{};
@@ -91,7 +99,7 @@ Json answer(const Witness& witness, const Json& question) {
     }
     return {{"error",
              "unknown question; questions are status, labels, map, pictures, library, at, area, why, node, "
-             "edits and events"}};
+             "surprises, edits and events"}};
   } catch (const Json::exception& error) {
     return {{"error", error.what()}};
   } catch (const std::invalid_argument& error) {

@@ -28,6 +28,7 @@ struct Witness {
 ///   area  label, and optionally min_m2, since_s, certainty
 ///   why   label           number as text, or name
 ///   node  node            "R03"
+///   surprises             and optionally least, csv (true: also all cells as "surprise_csv")
 ///   edits | events
 /// Questions that change something are for makeEdit().
 /// A question is a peer's text: one that is unknown, incomplete or wrong is answered with {"error": ...}.

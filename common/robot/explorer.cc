@@ -84,7 +84,7 @@ mapping::LocalBelief Explorer::believe() const {
   }
   belief.cells.reserve(snapshot.cells.size());
   for (const topics::CellLabel& c : snapshot.cells) {
-    belief.cells.push_back({c.cell, c.topic, c.seen, c.certainty});
+    belief.cells.push_back({c.cell, c.topic, c.seen, c.certainty, c.surprise});
   }
   times_.belief_ms = watch.lapMs();
   return belief;

@@ -3,7 +3,9 @@
 // and their labels, neighbours from cells in order.
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <initializer_list>
+#include <utility>
 
 #include "shoal/topics/cell_label_model.h"
 #include "shoal/topics/make_learner.h"
@@ -13,7 +15,7 @@ namespace shoal::topics {
 namespace {
 
 const std::string kKind = "shoalCLM";
-constexpr uint32_t kVersion = 2;
+constexpr uint32_t kVersion = 3;
 
 }  // namespace
 
@@ -46,6 +48,7 @@ std::vector<uint8_t> CellLabelModel::checkpoint() const {
   for (const LabelledCell& cell : cells_) {
     for (const int32_t value : {cell.index.x, cell.index.y, cell.index.z, cell.slot}) out.i32(value);
     out.u32(std::bit_cast<uint32_t>(cell.certainty));
+    out.u32(std::bit_cast<uint32_t>(cell.surprise));
     out.u32(cell.num_draws);
     out.i32(cell.seen_observation);
     out.i64(cell.seen.us);
@@ -57,6 +60,8 @@ std::vector<uint8_t> CellLabelModel::checkpoint() const {
   }
   out.u64(latest_.size());
   for (const int32_t c : latest_) out.i32(c);
+  out.u64(surprise_scale_.counts().size());
+  for (const int32_t count : surprise_scale_.counts()) out.i32(count);
   return std::move(out).finish();
 }
 
@@ -88,7 +93,7 @@ CellLabelModel CellLabelModel::resumed(const CellLabelHyperparameters& hyperpara
   }
   model.slots_.restore(num_ids, open);
   std::vector<int64_t> total(static_cast<size_t>(model.counts_.vocabularySize()));  // of each word
-  const size_t num_cells = in.count(48);
+  const size_t num_cells = in.count(52);
   for (size_t i = 0; i < num_cells; ++i) {
     world::CellIndex index;
     for (int32_t* const coordinate : {&index.x, &index.y, &index.z}) *coordinate = in.i32();
@@ -99,6 +104,8 @@ CellLabelModel CellLabelModel::resumed(const CellLabelHyperparameters& hyperpara
               "a cell has no label");
     cell.certainty = std::bit_cast<float>(in.u32());
     in.demand(cell.certainty >= 0 && cell.certainty <= 1, "a certainty lies outside [0, 1]");
+    cell.surprise = std::bit_cast<float>(in.u32());
+    in.demand(cell.surprise >= 0 && std::isfinite(cell.surprise), "a surprise is not a number >= 0");
     cell.num_draws = in.u32();
     cell.seen_observation = in.i32();
     cell.seen.us = in.i64();
@@ -126,6 +133,9 @@ CellLabelModel CellLabelModel::resumed(const CellLabelHyperparameters& hyperpara
     in.demand(model.latest_.back() >= 0 && model.latest_.back() < model.numCells(),
               "a latest cell is unknown");
   }
+  std::vector<int32_t> surprises(in.count(4));
+  for (int32_t& cells_at_step : surprises) cells_at_step = in.i32();
+  in.demand(model.surprise_scale_.restore(std::move(surprises)), "surprises are out of range");
   in.finish();
   return model;
 }

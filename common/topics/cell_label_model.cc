@@ -79,10 +79,16 @@ void CellLabelModel::add(const world::WordsInCells& words) {
   observation_ = words.observation;
   time_ = words.time;
   latest_.clear();
-  for (const world::CellWords& fresh : words.cells) {
+  const bool knows_nothing = cells_.empty();
+  const std::vector<double> bits = surprise(words, Surroundings::kGlobal);
+  const std::vector<float> surprises = surprise_scale_.of(bits);
+  for (size_t i = 0; i < words.cells.size(); ++i) {
+    const world::CellWords& fresh = words.cells[i];
     const int32_t c = cellFor(fresh.cell);
     latest_.push_back(c);
     LabelledCell& cell = cells_[static_cast<size_t>(c)];
+    if (cell.slot < 0 && !knows_nothing) surprise_scale_.add(bits[i]);
+    cell.surprise = std::max(cell.surprise, surprises[i]);
     cell.seen_observation = observation_;
     cell.seen = time_;
     if (cell.slot >= 0) counts_.remove(cell.words, cell.slot);
@@ -201,7 +207,7 @@ Snapshot CellLabelModel::snapshot() const {
   const std::vector<int32_t> told = toldAs();
   for (const LabelledCell& cell : cells_) {
     snapshot.cells.push_back({cell.index, slots_.id(told[static_cast<size_t>(cell.slot)]), cell.certainty,
-                              cell.seen_observation, cell.seen});
+                              cell.surprise, cell.seen_observation, cell.seen});
   }
   std::ranges::sort(snapshot.cells, {}, &CellLabel::cell);
   return snapshot;

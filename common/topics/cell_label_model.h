@@ -12,6 +12,7 @@
 #include "shoal/topics/learner.h"
 #include "shoal/topics/neighborhood.h"
 #include "shoal/topics/surprise.h"
+#include "shoal/topics/surprise_scale.h"
 #include "shoal/topics/topic_slots.h"
 #include "shoal/world/words_in_cells.h"
 
@@ -70,7 +71,8 @@ class CellLabelModel final : public Learner {
   /// Topics as exact counts, every cell with its label.
   ///
   /// The certainty of a cell is the sum of p(z = k) over its topic's labels, in the conditional that it was
-  /// last drawn from.
+  /// last drawn from. Its surprise is how unusual, compared with all the robot had seen, its words were to the
+  /// model of the whole map just before they joined it, in the image that surprised most.
   ///
   /// Cost: O(V K + cells log cells).
   Snapshot snapshot() const override;
@@ -81,7 +83,7 @@ class CellLabelModel final : public Learner {
   /// @throws std::invalid_argument if `words` breaks its contract.
   std::vector<double> surprise(const world::WordsInCells& words, Surroundings surroundings) const;
 
-  /// About 48 bytes a cell and 8 a different word of a cell.
+  /// About 52 bytes a cell and 8 a different word of a cell.
   std::vector<uint8_t> checkpoint() const override;
 
   /// The model that wrote the checkpoint, given what it was made with.
@@ -105,6 +107,7 @@ class CellLabelModel final : public Learner {
     std::vector<world::WordCount> words;  // ascending, all images together
     int64_t num_words = 0;                // the sum of their counts
     float certainty = 0;                  // p(z = slot) when it was last drawn
+    float surprise = 0;
     int32_t slot = -1;                    // its label; -1 before the first draw
     uint32_t num_draws = 0;               // names its next random numbers
     int32_t seen_observation = 0;
@@ -130,6 +133,8 @@ class CellLabelModel final : public Learner {
   std::vector<LabelledCell> cells_;  // by number, as in neighborhood_
   std::vector<int32_t> cells_of_;    // by slot
   std::vector<int32_t> twin_of_;  // by slot: the lowest of its twins when last compared; itself when closed
+
+  SurpriseScale surprise_scale_;
 
   std::vector<int32_t> latest_;  // cells of the latest observation
   int32_t observation_ = -1;     // its number

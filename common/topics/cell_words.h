@@ -19,6 +19,7 @@ struct Cell {
   world::CellIndex index;
   std::vector<Token> tokens;     ///< in order of arrival; a later image appends
   uint32_t num_draws = 0;        ///< how often it was given random numbers: names its next stream
+  float surprise = 0;            ///< the most at any sight: see SurpriseScale
   int32_t seen_observation = 0;  ///< last image that put words here
   world::Timestamp seen;
 };

@@ -22,6 +22,7 @@ struct CellLabel {
   world::CellIndex cell;
   world::TopicId topic{};
   float certainty = 0;           ///< in [0, 1]; each model says what it means
+  float surprise = 0;            ///< >= 0, the most that it was at any sight: see SurpriseScale
   int32_t seen_observation = 0;  ///< last image that put words here
   world::Timestamp seen;
 };

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "shoal/topics/fixed_log.h"
 #include "shoal/topics/schedule.h"
 
 namespace shoal::topics {
@@ -40,10 +41,15 @@ void TopicModel::add(const world::WordsInCells& words) {
   time_ = words.time;
   latest_.clear();
   const int32_t num_known = numCells();
-  for (const world::CellWords& cell_words : words.cells) {
+  const std::vector<double> bits = surprise(words);
+  const std::vector<float> surprises = surprise_scale_.of(bits);
+  for (size_t i = 0; i < words.cells.size(); ++i) {
+    const world::CellWords& cell_words = words.cells[i];
     const int32_t c = cellFor(cell_words.cell);
     latest_.push_back(c);
     Cell& cell = cells_[static_cast<size_t>(c)];
+    if (c >= num_known && num_known > 0) surprise_scale_.add(bits[i]);
+    cell.surprise = std::max(cell.surprise, surprises[i]);
     cell.seen_observation = observation_;
     cell.seen = time_;
     const std::vector<Token> fresh = tokens(cell_words);
@@ -119,6 +125,35 @@ Snapshot TopicModel::snapshot() const {
   return snapshot;
 }
 
+std::vector<double> TopicModel::surprise(const world::WordsInCells& words) const {
+  check(words, gibbs_.vocabularySize());
+  std::vector<double> bits(words.cells.size());
+  const TopicSlots& slots = gibbs_.slots();
+  double all = 0;
+  for (int32_t k = 0; k < slots.end(); ++k) all += static_cast<double>(gibbs_.topicCount(k));
+  if (all == 0) return bits;
+  const double beta = hyperparameters_.beta;
+  std::vector<double> share(static_cast<size_t>(slots.end()));  // n_k / Σ_j n_j / (n_k + Vβ)
+  for (int32_t k = 0; k < slots.end(); ++k) {
+    const auto count = static_cast<double>(gibbs_.topicCount(k));
+    share[static_cast<size_t>(k)] = count / all / (count + gibbs_.vocabularySize() * beta);
+  }
+  for (size_t i = 0; i < bits.size(); ++i) {
+    int64_t log_sum = 0, num_words = 0;
+    for (const world::WordCount& w : words.cells[i].words) {
+      const std::span<const int32_t> row = gibbs_.wordCounts(w.word);
+      double likelihood = 0;
+      for (size_t k = 0; k < share.size(); ++k) likelihood += share[k] * (row[k] + beta);
+      // Logarithms of integers are the same on every machine.
+      const auto scaled = static_cast<uint64_t>(std::max(likelihood * 0x1p62, 1.0));
+      log_sum += w.count * (62 * kLogOne - int64_t{fixedLog2(scaled)});
+      num_words += w.count;
+    }
+    bits[i] = static_cast<double>(log_sum) / static_cast<double>(kLogOne * num_words);
+  }
+  return bits;
+}
+
 int32_t TopicModel::cellFor(const world::CellIndex& index) {
   const int32_t c = neighborhood_.insert(index);
   if (static_cast<size_t>(c) == cells_.size()) {
@@ -178,8 +213,8 @@ CellLabel TopicModel::label(int32_t c, std::span<double> neighbor_counts) const 
   const auto b = static_cast<size_t>(best);
   const double certainty = (counts[b] + neighbor_counts[b] + alpha) / mass;
   const Cell& cell = cells_[static_cast<size_t>(c)];
-  return {cell.index, slots.id(best), static_cast<float>(std::min(certainty, 1.0)), cell.seen_observation,
-          cell.seen};
+  return {cell.index,    slots.id(best),        static_cast<float>(std::min(certainty, 1.0)),
+          cell.surprise, cell.seen_observation, cell.seen};
 }
 
 std::vector<TopicCounts> TopicModel::topics() const {

@@ -11,6 +11,7 @@
 #include "shoal/topics/hyperparameters.h"
 #include "shoal/topics/learner.h"
 #include "shoal/topics/neighborhood.h"
+#include "shoal/topics/surprise_scale.h"
 #include "shoal/world/words_in_cells.h"
 
 namespace shoal::topics {
@@ -73,7 +74,13 @@ class TopicModel final : public Learner {
   /// Cost: O(V K + cells (K + log cells)); about 5 ms for 20 000 cells, V = 15436, K = 12.
   Snapshot snapshot() const override;
 
-  /// About 40 bytes a cell and 4 a word.
+  /// How surprising an image is to the model as it stands, before observe(): of each cell, in order, the mean
+  /// over its words of -log2 Σ_k n_k / Σ_j n_j · (n_kw + β) / (n_k + Vβ), bits per word; 0 while nothing was
+  /// seen. snapshot() tells how unusual they were (SurpriseScale).
+  /// @throws std::invalid_argument if `words` breaks its contract.
+  std::vector<double> surprise(const world::WordsInCells& words) const;
+
+  /// About 44 bytes a cell and 4 a word.
   std::vector<uint8_t> checkpoint() const override;
 
   /// The model that wrote the checkpoint, given what it was made with.
@@ -113,6 +120,8 @@ class TopicModel final : public Learner {
   std::vector<int32_t> cell_counts_;  // n_ck, one row of gibbs_.stride() a cell
   std::vector<double> neighbor_counts_;
   std::vector<Adopted> adopted_;  // in the count tables, not this robot's own
+
+  SurpriseScale surprise_scale_;
 
   std::vector<int32_t> latest_;  // cells of the latest observation
   int32_t observation_ = -1;     // its number

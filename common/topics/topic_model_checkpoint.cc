@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // TopicModel's state to bytes and back. What follows from the rest is left out: counts follow from words and
 // their topics, neighbours from cells in order.
+#include <bit>
+#include <cmath>
 #include <utility>
 
 #include "shoal/topics/make_learner.h"
@@ -11,7 +13,7 @@ namespace shoal::topics {
 namespace {
 
 const std::string kKind = "shoalTPM";
-constexpr uint32_t kVersion = 1;
+constexpr uint32_t kVersion = 2;
 
 }  // namespace
 
@@ -43,6 +45,7 @@ std::vector<uint8_t> TopicModel::checkpoint() const {
   for (const Cell& cell : cells_) {
     for (const int32_t value : {cell.index.x, cell.index.y, cell.index.z}) out.i32(value);
     out.u32(cell.num_draws);
+    out.u32(std::bit_cast<uint32_t>(cell.surprise));
     out.i32(cell.seen_observation);
     out.i64(cell.seen.us);
     out.u64(cell.tokens.size());
@@ -59,6 +62,8 @@ std::vector<uint8_t> TopicModel::checkpoint() const {
       out.i32(w.count);
     }
   }
+  out.u64(surprise_scale_.counts().size());
+  for (const int32_t count : surprise_scale_.counts()) out.i32(count);
   return std::move(out).finish();
 }
 
@@ -95,7 +100,7 @@ TopicModel TopicModel::resumed(const Hyperparameters& hyperparameters, int32_t v
     model.gibbs_.addCounts(slot, words, 1);
   };
 
-  const size_t num_cells = in.count(40);
+  const size_t num_cells = in.count(44);
   for (size_t i = 0; i < num_cells; ++i) {
     world::CellIndex index;
     for (int32_t* const coordinate : {&index.x, &index.y, &index.z}) *coordinate = in.i32();
@@ -103,6 +108,8 @@ TopicModel TopicModel::resumed(const Hyperparameters& hyperparameters, int32_t v
     in.demand(c == static_cast<int32_t>(i), "a cell is there twice");
     Cell& cell = model.cells_.back();
     cell.num_draws = in.u32();
+    cell.surprise = std::bit_cast<float>(in.u32());
+    in.demand(cell.surprise >= 0 && std::isfinite(cell.surprise), "a surprise is not a number >= 0");
     cell.seen_observation = in.i32();
     cell.seen.us = in.i64();
     const size_t num_tokens = in.count(4);
@@ -139,6 +146,9 @@ TopicModel TopicModel::resumed(const Hyperparameters& hyperparameters, int32_t v
     count(topic.slot, topic.words);
     model.adopted_.push_back(std::move(topic));
   }
+  std::vector<int32_t> surprises(in.count(4));
+  for (int32_t& cells_at_step : surprises) cells_at_step = in.i32();
+  in.demand(model.surprise_scale_.restore(std::move(surprises)), "surprises are out of range");
   for (const TopicSlots::Named& topic : open) {
     in.demand(model.gibbs_.topicCount(topic.slot) > 0, "a topic has no words");
   }

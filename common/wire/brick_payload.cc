@@ -109,9 +109,11 @@ void encodeWhere(Encoder& encoder, std::span<const Piece* const> pieces, CellFie
 }
 
 template <typename Coder>
-bool codeCertainties(Coder& coder, const CellField& field, Palette& steps) {
+bool codeCertainties(Coder& coder, const CellField& field, Palette& steps, Palette& surprises) {
   return codePalette(coder, mapping::kCertaintySteps, mapping::kCertaintySteps + 1, steps.values) &&
-         codeIndices(coder, field, steps.size(), Scale::kNames, steps.indices) && !coder.overrun();
+         codeIndices(coder, field, steps.size(), Scale::kNames, steps.indices) &&
+         codePalette(coder, mapping::kMostSurpriseSteps, mapping::kMostSurpriseSteps + 1, surprises.values) &&
+         codeIndices(coder, field, surprises.size(), Scale::kNames, surprises.indices) && !coder.overrun();
 }
 
 template <typename Coder>
@@ -166,11 +168,15 @@ Bytes encodeCertainties(std::span<const Piece* const> pieces) {
   Encoder encoder;
   CellField field;
   encodeWhere<CertaintyPart>(encoder, pieces, field);
-  std::vector<int64_t> steps;
-  for (const Piece* piece : pieces)
-    for (const auto& c : std::get<CertaintyPart>(piece->content).cells) steps.push_back(c.steps);
-  Palette palette = Palette::of(std::move(steps));
-  SHOAL_DEMAND(codeCertainties(encoder, field, palette));
+  std::vector<int64_t> steps, surprises;
+  for (const Piece* piece : pieces) {
+    for (const auto& c : std::get<CertaintyPart>(piece->content).cells) {
+      steps.push_back(c.steps);
+      surprises.push_back(c.surprise);
+    }
+  }
+  Palette step_palette = Palette::of(std::move(steps)), surprise_palette = Palette::of(std::move(surprises));
+  SHOAL_DEMAND(codeCertainties(encoder, field, step_palette, surprise_palette));
   return encoder.finish();
 }
 
@@ -178,12 +184,15 @@ bool decodeCertainties(std::span<const uint8_t> payload, std::span<Piece> pieces
   Decoder decoder(payload);
   CellField field;
   std::vector<size_t> ends;
-  Palette steps;
-  if (!decodeWhere(decoder, pieces, field, ends) || !codeCertainties(decoder, field, steps)) return false;
+  Palette steps, surprises;
+  if (!decodeWhere(decoder, pieces, field, ends) || !codeCertainties(decoder, field, steps, surprises))
+    return false;
   for (size_t i = 0, cell = 0; i < pieces.size(); ++i) {
     CertaintyPart part;
-    for (; cell < ends[i]; ++cell)
-      part.cells.push_back({field.cells()[cell], static_cast<uint8_t>(steps.at(cell))});
+    for (; cell < ends[i]; ++cell) {
+      part.cells.push_back({field.cells()[cell], static_cast<uint8_t>(steps.at(cell)),
+                            static_cast<uint8_t>(surprises.at(cell))});
+    }
     pieces[i].content = std::move(part);
   }
   return true;

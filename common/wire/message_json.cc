@@ -126,7 +126,7 @@ json brickFields(const mapping::Piece& piece) {
       j["cells"].push_back(json::array({arrayOf(c.cell), number(c.topic), c.seen.us}));
   } else {
     for (const auto& c : std::get<mapping::CertaintyPart>(piece.content).cells)
-      j["certainties"].push_back(json::array({arrayOf(c.cell), c.steps}));
+      j["certainties"].push_back(json::array({arrayOf(c.cell), c.steps, c.surprise}));
   }
   return j;
 }

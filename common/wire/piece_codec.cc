@@ -72,6 +72,10 @@ std::string faultOf(const CertaintyPart& certainty, const mapping::PieceKey& key
   if (key.kind != PieceKind::kCertainty) return "key and content are of different kinds";
   for (const auto& c : certainty.cells) {
     if (c.steps > mapping::kCertaintySteps) return "certainty steps lie in [0, 63]";
+    if (c.surprise > mapping::kMostSurpriseSteps ||
+        (c.surprise > 0 && c.surprise < mapping::kLeastSurpriseSteps)) {
+      return "surprise steps are 0 or lie in [12, 63]";
+    }
   }
   return faultOfCells(certainty.cells, key.index);
 }

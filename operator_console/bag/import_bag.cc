@@ -22,11 +22,11 @@ namespace shoal::console {
 namespace {
 
 namespace fs = std::filesystem;
-using Topics = std::map<std::string, std::string>;  // types by name
+using TypesByTopic = std::map<std::string, std::string>;  // types by name
 
 constexpr const char* kImage = "sensor_msgs/msg/Image";
 constexpr const char* kCompressed = "sensor_msgs/msg/CompressedImage";
-constexpr const char* kInfo = "sensor_msgs/msg/CameraInfo";
+constexpr const char* kCameraInfo = "sensor_msgs/msg/CameraInfo";
 constexpr const char* kOdometry = "nav_msgs/msg/Odometry";
 constexpr const char* kPose = "geometry_msgs/msg/PoseStamped";
 constexpr const char* kPoseWithCovariance = "geometry_msgs/msg/PoseWithCovarianceStamped";
@@ -41,7 +41,7 @@ std::string listed(const std::vector<std::string>& topics) {
 
 // The topic that is meant: the one given, or the only one that could be.
 template <typename Fits>
-std::string chosen(const Topics& topics, const std::string& given, const std::string& flag, bool needed,
+std::string chosen(const TypesByTopic& topics, const std::string& given, const std::string& flag, bool needed,
                    Fits&& fits) {
   std::vector<std::string> fitting;
   for (const auto& [topic, type] : topics)
@@ -62,7 +62,7 @@ std::string chosen(const Topics& topics, const std::string& given, const std::st
 }
 
 Imported topicsOf(const ImportOptions& options) {
-  Topics topics;
+  TypesByTopic topics;
   readBag(options.bag, [&](const BagMessage& m) { topics.try_emplace(m.topic, m.type); });
   const auto isPicture = [](const std::string& type) { return type == kImage || type == kCompressed; };
   Imported found;
@@ -81,13 +81,13 @@ Imported topicsOf(const ImportOptions& options) {
   if (options.camera.empty()) {
     found.info = chosen(topics, options.info, "--info", true,
                         [&](const std::string& topic, const std::string& type, bool given = false) {
-                          return type == kInfo && (given || !saysDepth(topic));
+                          return type == kCameraInfo && (given || !saysDepth(topic));
                         });
   }
   return found;
 }
 
-std::string seconds(const RosStamp& stamp) {
+std::string secondsText(const RosStamp& stamp) {
   return fmt::format("{}.{:06}", stamp.us / 1'000'000, stamp.us % 1'000'000);
 }
 
@@ -150,7 +150,7 @@ class Import {
 
   void keep(const RosPicture& picture, bool is_depth) {
     List& list = is_depth ? depth_ : rgb_;
-    const std::string name = std::string(is_depth ? "depth/" : "rgb/") + seconds(picture.stamp) + ".png";
+    const std::string name = std::string(is_depth ? "depth/" : "rgb/") + secondsText(picture.stamp) + ".png";
     if (list.has(picture.stamp)) {
       ++found_.left_out["a second picture of the same time"];
       return;
@@ -158,7 +158,7 @@ class Import {
     const std::string file = options_.folder + "/" + name;
     if (!cv::imwrite(file, picture.pixels, {cv::IMWRITE_PNG_COMPRESSION, 1}))
       throw std::runtime_error(file + " cannot be written");
-    list.add(picture.stamp, seconds(picture.stamp) + " " + name);
+    list.add(picture.stamp, secondsText(picture.stamp) + " " + name);
     ++(is_depth ? found_.depths : found_.images);
     if (!is_depth && width_ == 0) {
       width_ = picture.pixels.cols;
@@ -179,8 +179,9 @@ class Import {
     const Eigen::Vector3d t = camera.translation();
     Eigen::Quaterniond q(camera.linear());
     if (q.w() < 0) q.coeffs() = -q.coeffs();
-    poses_.add(pose.stamp, fmt::format("{} {:.6f} {:.6f} {:.6f} {:.9f} {:.9f} {:.9f} {:.9f}",
-                                       seconds(pose.stamp), t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()));
+    poses_.add(pose.stamp,
+               fmt::format("{} {:.6f} {:.6f} {:.6f} {:.9f} {:.9f} {:.9f} {:.9f}", secondsText(pose.stamp),
+                           t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()));
     ++found_.poses;
   }
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::string_view kMagic = "\x89MCAP0\r\n";
 constexpr uint64_t kMaxRecord = uint64_t{1} << 28;  // a chunk is some megabytes
-constexpr size_t kMaxChannels = 65536;
+constexpr size_t kMaxBagChannels = 65536;
 
 enum Opcode : uint8_t { kSchema = 3, kChannel = 4, kMessage = 5, kChunk = 6, kDataEnd = 15 };
 
@@ -63,7 +63,7 @@ class Mcap {
       const uint64_t id = f.number(2), schema = f.number(2);
       Channel channel{f.string(), types_[schema], {}};
       channel.is_cdr = f.string() == "cdr";
-      if (f.good() && channels_.size() < kMaxChannels) channels_.insert_or_assign(id, channel);
+      if (f.good() && channels_.size() < kMaxBagChannels) channels_.insert_or_assign(id, channel);
     } else if (opcode == kMessage) {
       const auto channel = channels_.find(f.number(2));
       f.take(4 + 8 + 8);  // sequence, times: messages have stamps of their own

@@ -11,6 +11,7 @@
 #include "planted_map.h"
 #include "shoal/topics/cell_label_model.h"
 #include "shoal/topics/fixed_log.h"
+#include "shoal/topics/topic_model.h"
 
 namespace shoal::topics {
 namespace {
@@ -73,6 +74,41 @@ TEST(SurpriseTest, FindsAPlantedNoveltyAtFirstSight) {
     for (int32_t n = 14; n < 20; ++n) model.observe(map.image(n));
     EXPECT_LT(chance(map.image(20)), 0.75);
   }
+}
+
+// The map keeps it: cells of the kept class stand out from the image that first showed them.
+TEST(SurpriseTest, TheMapRemembersWhatSurprised) {
+  for (const uint64_t seed : {1, 2, 3}) {
+    PlantedMap map(seed, 5);
+    CellLabelModel model({}, PlantedMap::groups(), seed, world::RobotId{0});
+    const auto isNovel = [&](const world::CellIndex& cell) { return map.classOf(cell) == 4; };
+    for (int32_t n = 0; n < 14; ++n) {
+      world::WordsInCells image = map.image(n);
+      std::erase_if(image.cells, [&](const world::CellWords& cell) { return isNovel(cell.cell); });
+      model.observe(image);
+    }
+    for (int32_t n = 14; n < 17; ++n) model.observe(map.image(n));
+    double novel = 0, found = 0, others = 0, wrong = 0;
+    for (const CellLabel& c : model.snapshot().cells) {
+      (isNovel(c.cell) ? novel : others) += 1;
+      if (c.surprise >= 1.5f) (isNovel(c.cell) ? found : wrong) += 1;
+    }
+    ASSERT_GT(novel, 10);
+    EXPECT_GT(found / novel, 0.3) << seed;
+    EXPECT_GT(found / novel, 5 * wrong / others) << found / novel << " of them, " << wrong / others << seed;
+  }
+}
+
+// One topic of four words of one kind, V = 3, β = 1: (4 + 1) / (4 + 3) for that word, 1 / 7 for another.
+TEST(SurpriseTest, OfWordTopicsIsThePerplexityWorkedByHand) {
+  TopicModel model({.max_topics = 1, .alpha = 1, .beta = 1, .gamma = 0}, 3, 1, world::RobotId{0});
+  world::WordsInCells image{.observation = 0, .time = {}, .cells = {{{0, 0, 0}, {{0, 4}}}}};
+  EXPECT_EQ(model.surprise(image), std::vector<double>{0});
+  model.add(image);
+  image.cells = {{{5, 0, 0}, {{0, 1}}}, {{6, 0, 0}, {{0, 1}, {2, 3}}}};
+  const double own = -std::log2(5.0 / 7), other = -std::log2(1.0 / 7);
+  EXPECT_NEAR(model.surprise(image)[0], own, 1e-3);
+  EXPECT_NEAR(model.surprise(image)[1], (own + 3 * other) / 4, 1e-3);
 }
 
 TEST(SurpriseTest, RefusesWordsThatBreakTheirContract) {

@@ -90,8 +90,10 @@ std::vector<Piece> bricks() {
 
 std::vector<Piece> certainties() {
   CertaintyPart part;
-  for (int y = 0; y < 9; ++y) part.cells.push_back({{-32, 16 + y, 0}, static_cast<uint8_t>(7 * y)});
-  const CertaintyPart above{{{{-32, 20, 16}, 63}, {{-31, 20, 16}, 60}}};
+  for (int y = 0; y < 9; ++y)
+    part.cells.push_back(
+        {{-32, 16 + y, 0}, static_cast<uint8_t>(7 * y), static_cast<uint8_t>(y == 5 ? 21 : 0)});
+  const CertaintyPart above{{{{-32, 20, 16}, 63, 0}, {{-31, 20, 16}, 60, 63}}};
   return {{{RobotId{3}, PieceKind::kCertainty, {-2, 1, 0}}, {1, 54}, 0, 1, part},
           {{RobotId{3}, PieceKind::kCertainty, {-2, 1, 1}}, {1, 60}, 0, 1, above}};
 }
@@ -274,8 +276,11 @@ Piece noiseBrick(const std::array<int32_t, 3>& brick, double density, Random& ra
 Piece noiseCertainty(const std::array<int32_t, 3>& brick, double density, Random& random) {
   const Piece cells = noiseBrick(brick, density, random);
   CertaintyPart part;
-  for (const auto& c : std::get<BrickPart>(cells.content).cells)
-    part.cells.push_back({c.cell, static_cast<uint8_t>(below(random, 64))});
+  for (const auto& c : std::get<BrickPart>(cells.content).cells) {
+    const auto steps = static_cast<uint8_t>(below(random, 64));
+    const int surprise = below(random, 8) == 0 ? 12 + below(random, 52) : 0;
+    part.cells.push_back({c.cell, steps, static_cast<uint8_t>(surprise)});
+  }
   Piece piece = cells;
   piece.key.kind = PieceKind::kCertainty;
   piece.content = part;

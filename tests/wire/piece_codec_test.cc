@@ -243,6 +243,8 @@ TEST(PieceCodecTest, RefusesFaultyPieces) {
   Piece certainty = noiseCertainty({0, 0, 0}, 0.01, random);
   EXPECT_EQ(fault(certainty), "");
   broken(certainty, [](Piece& p) { std::get<CertaintyPart>(p.content).cells[0].steps = 64; });
+  broken(certainty, [](Piece& p) { std::get<CertaintyPart>(p.content).cells[0].surprise = 64; });
+  broken(certainty, [](Piece& p) { std::get<CertaintyPart>(p.content).cells[0].surprise = 11; });
   EXPECT_THROW(encode(topic, 1, {-1}), std::invalid_argument);
 }
 

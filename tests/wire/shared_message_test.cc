@@ -40,8 +40,11 @@ std::vector<Piece> someBricks(int count, double density, Random& random) {
 std::vector<Piece> certaintiesOf(std::vector<Piece> pieces, Random& random) {
   for (Piece& piece : pieces) {
     CertaintyPart part;
-    for (const auto& c : std::get<BrickPart>(piece.content).cells)
-      part.cells.push_back({c.cell, static_cast<uint8_t>(random.below(mapping::kCertaintySteps + 1))});
+    for (const auto& c : std::get<BrickPart>(piece.content).cells) {
+      const auto steps = static_cast<uint8_t>(random.below(mapping::kCertaintySteps + 1));
+      const uint64_t surprise = random.below(20) == 0 ? 12 + random.below(52) : 0;
+      part.cells.push_back({c.cell, steps, static_cast<uint8_t>(surprise)});
+    }
     piece.key.kind = PieceKind::kCertainty;
     piece.content = part;
   }

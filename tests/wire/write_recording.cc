@@ -79,7 +79,8 @@ std::vector<Piece> wholePieces(RobotId robot, int32_t observation, Random& rando
                            {b - 1 + number(robot), -1, b / 2}));
     mapping::CertaintyPart certainty;
     for (const auto& c : std::get<mapping::BrickPart>(pieces.back().content).cells)
-      certainty.cells.push_back({c.cell, static_cast<uint8_t>(random.below(64))});
+      certainty.cells.push_back({c.cell, static_cast<uint8_t>(random.below(64)),
+                                 static_cast<uint8_t>(random.below(9) == 0 ? 12 + random.below(52) : 0)});
     pieces.push_back({{robot, mapping::PieceKind::kCertainty, pieces.back().key.index}, {}, 0, 1, certainty});
   }
   pieces.push_back(moved(noiseBrick({0, 0, -3}, 0.1, random), robot, {0, 0, -3}));

@@ -10,6 +10,7 @@ As a module:
     mission = shoal_reader.read_log("mission.lcmlog")
     mission.robots()                     # ["R00", "R01", ...]
     mission.cells("R00")                 # {(x, y, z): (topic, seen_us, certainty steps of 1/63)}
+    mission.surprises("R00")             # {(x, y, z): how unusual the cell was when it was seen}
     mission.topics("R00")                # {id: {"created_us", "weight", "group_sizes", "words": {word: count}}}
     mission.map()                        # the fused map: {"cells": {(x, y, z): (label, robot, seen_us, steps)}, ...}
     shoal_reader.decode(message)         # one message as a dict, or BadMessage

@@ -3,7 +3,7 @@
 from .bit_mixer import Contexts, Mixer
 from .cell_field import WEIGHTS
 from .errors import require
-from .layout import MAX_TIME, STEPS
+from .layout import LEAST_SURPRISE, MAX_TIME, STEPS
 from .range_coder import Models
 
 
@@ -112,3 +112,9 @@ def times(bits, field, max_size):
 
 def certainties(bits, field):
     return column(bits, field, STEPS, STEPS + 1)
+
+
+def surprises(bits, field):
+    steps = column(bits, field, STEPS, STEPS + 1)
+    require(all(s == 0 or s >= LEAST_SURPRISE for s in steps), "surprise steps are 0 or lie in [12, 63]")
+    return steps

@@ -12,6 +12,7 @@ MAX_CELLS = 32768  # of all bricks in a message
 FORMAT = 1
 MAX_LAYER = 540  # bytes of a picture in one message
 STEPS = 63  # certainties are in steps of 1/63
+LEAST_SURPRISE = 12  # surprises in steps of 1/8, this many at least, or 0
 MASK = 2**64 - 1  # hashes, digests and fingerprints are 64 bits
 
 # Channel kind -> the fields between `format` and `checksum` as (name, struct code).

@@ -182,7 +182,7 @@ class Mission:
     def cells(self, robot):
         """A robot's own map: {(x, y, z): (topic, seen_us, certainty steps)}; 0 steps where none was heard."""
         steps = {cell: level for parts in self._of(robot, "CERTAINTY") for m in parts.values()
-                 for cell, level in m["certainties"]}
+                 for cell, level, _ in m["certainties"]}
         cells = {}
         for parts in self._of(robot, "BRICK"):
             for m in parts.values():
@@ -190,6 +190,11 @@ class Mission:
                     if cell not in cells or cells[cell][1] < seen_us:
                         cells[cell] = (topic, seen_us, steps.get(cell, 0))
         return cells
+
+    def surprises(self, robot):
+        """{(x, y, z): how unusual the cell was to the robot when it saw it, 1 being what one in ten exceeds}."""
+        return {cell: steps / 8 for parts in self._of(robot, "CERTAINTY") for m in parts.values()
+                for cell, _, steps in m["certainties"] if steps}
 
     def topics(self, robot):
         """{id: {"created_us", "weight", "group_sizes", "words": {word: count}}}, retired topics left out."""

@@ -151,10 +151,10 @@ def _read_bricks(m, payload):
 def _read_certainties(m, payload):
     bits = Bits(payload)
     bricks, field, ranges = _where(bits, m, "certain_bricks")
-    steps = cells.certainties(bits, field)
+    steps, surprises = cells.certainties(bits, field), cells.surprises(bits, field)
     bits.end()
     for brick, (begin, end) in zip(bricks, ranges):
-        brick["certainties"] = list(zip(field.cells[begin:end], steps[begin:end]))
+        brick["certainties"] = list(zip(field.cells[begin:end], steps[begin:end], surprises[begin:end]))
     m["certain_bricks"] = bricks
 
 
