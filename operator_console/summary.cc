@@ -20,7 +20,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string nodeNameOf(const Json& row) {
+constexpr double kLeastSurprise = 2;
+constexpr size_t kSurprisesInText = 3;
+
+std::string labelText(const Json& row) {
   const std::string name = row.at("name");
   return name.empty() ? std::to_string(row.at("label").get<int>()) : name;
 }
@@ -39,6 +42,10 @@ MissionSummary readSummaryOf(const std::string& run) {
   for (const Json& row : mission.labels) mission.area_m2 += row.at("area_m2").get<double>();
   mission.pictures = picturesOfRun(run);
   namespace fs = std::filesystem;
+  if (fs::exists(run + "/robots")) {
+    const Where where{.node = {}, .run = run, .log = {}, .matcher = matching::usualMatcher()};
+    mission.surprises = ask(where, {{"query", "surprises"}, {"least", kLeastSurprise}}).at("places");
+  }
   mission.map_png = encodePng(
       render(view.map, world::Grid(view.cell_size_m), "north up", {}, legendPictures(mission.pictures)));
   if (fs::exists(run + "/global_map.png")) mission.truth_png = mapping::readFile(run + "/global_map.png");
@@ -63,8 +70,16 @@ std::string summaryText(const MissionSummary& mission, size_t max_bytes) {
   }
   for (const Json& row : mission.labels) {
     const int label = row.at("label");
-    lines.push_back(fmt::format("{} {:.0f} m2, R{:02} {:.0f} s", nodeNameOf(row), row.at("area_m2").get<double>(),
-                                label / 10000, row.at("first_seen_s").get<double>()));
+    lines.push_back(fmt::format("{} {:.0f} m2, R{:02} {:.0f} s", labelText(row),
+                                row.at("area_m2").get<double>(), label / 10000,
+                                row.at("first_seen_s").get<double>()));
+  }
+  for (size_t i = 0; i < std::min(kSurprisesInText, mission.surprises.size()); ++i) {
+    const Json& place = mission.surprises[i];
+    lines.push_back(
+        fmt::format("strange ({:.1f}, {:.1f}) m, {:.1f}, {} {:.0f} s", place.at("x_m").get<double>(),
+                    place.at("y_m").get<double>(), place.at("surprise").get<double>(),
+                    place.at("robots").front().get<std::string>(), place.at("first_seen_s").get<double>()));
   }
   std::string text;
   for (const std::string& line : lines) {

@@ -13,9 +13,11 @@ namespace shoal::console {
 
 /// A finished mission as its summary tells it.
 struct MissionSummary {
-  nlohmann::ordered_json facts;                    ///< summary.json
-  nlohmann::ordered_json labels;                   ///< rows as `labels --json` has them, largest area first
-  double area_m2 = 0;                              ///< of all labels
+  nlohmann::ordered_json facts;   ///< summary.json
+  nlohmann::ordered_json labels;  ///< rows as `labels --json` has them, largest area first
+  double area_m2 = 0;             ///< of all labels
+  nlohmann::ordered_json surprises =
+      nlohmann::ordered_json::array();             ///< places as `surprises --json` has them
   mapping::LabelPictures pictures;                 ///< what labels look like
   std::string map_png;                             ///< the map as it is now, in the colours of labels
   std::string truth_png;                           ///< bytes of global_map.png; empty when it is missing

@@ -145,6 +145,25 @@ std::string labels(const MissionSummary& mission) {
                               : "<ul>" + rare + "</ul>\n");
 }
 
+std::string surprises(const MissionSummary& mission) {
+  std::string text = "<h2>Surprises</h2>\n";
+  if (mission.surprises.empty()) return text + "<p class=\"note\">Nothing stood out.</p>\n";
+  text += "<table><tr><th>surprise</th><th>place, m</th><th>cells</th><th>label</th><th>seen</th></tr>\n";
+  const size_t told = std::min<size_t>(mission.surprises.size(), 8);
+  for (size_t i = 0; i < told; ++i) {
+    const Json& p = mission.surprises[i];
+    text += fmt::format(
+        "<tr><td>{:.1f}</td><td>({:.1f}, {:.1f})</td><td>{}</td><td>{}</td><td>by {} at {:.0f} s</td></tr>\n",
+        p.at("surprise").get<double>(), p.at("x_m").get<double>(), p.at("y_m").get<double>(),
+        p.at("cells").get<int64_t>(), titleOf(p), p.at("robots").front().get<std::string>(),
+        p.at("first_seen_s").get<double>());
+  }
+  return text + fmt::format(
+                    "</table>\n<p class=\"note\">Where robots saw what they had not met: 1 is what one "
+                    "cell in ten exceeds. {} places in all.</p>\n",
+                    mission.surprises.size());
+}
+
 std::string link(const MissionSummary& mission) {
   const Json& f = mission.facts;
   std::string text = "<h2>The link</h2>\n";
@@ -256,7 +275,8 @@ std::string summaryHtml(const MissionSummary& mission) {
   page += facts(mission);
   if (!mission.map_png.empty())
     page += "<h2>The map</h2>\n" + image(mission.map_png, " class=\"map\"", "the fused map") + "\n";
-  return page + labels(mission) + link(mission) + faults(mission) + scores(mission) + "</body></html>\n";
+  return page + labels(mission) + surprises(mission) + link(mission) + faults(mission) + scores(mission) +
+         "</body></html>\n";
 }
 
 }  // namespace shoal::console

@@ -19,7 +19,7 @@ using Json = nlohmann::ordered_json;
 const std::vector<std::string> kColumns = {"x_m", "y_m", "z_m", "topic", "seen_s", "certainty"};
 const std::vector<std::string> kSurpriseColumns = {"x_m", "y_m", "z_m", "surprise"};
 
-// Four decimals that stand for the same step of 1/63 as the exact number: so the files of a run add up to the
+// Four decimals that stand for the same ninth as the exact number: so the files of a run add up to the
 // map that was made from what travelled.
 std::string certaintyText(float certainty) {
   const int step = certaintySteps(certainty);

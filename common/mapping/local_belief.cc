@@ -30,8 +30,10 @@ std::vector<world::WordCount> quantize(const std::vector<world::WordCount>& coun
 }
 
 uint8_t certaintySteps(float certainty, Detail detail) {
-  const long steps = std::lround(std::clamp(certainty, 0.f, 1.f) * kCertaintySteps);
-  return static_cast<uint8_t>(detail == Detail::kFine ? steps : (steps + 4) / 9 * 9);
+  const long ninths = std::lround(std::clamp(certainty, 0.f, 1.f) * 9);
+  const long thirds = (ninths + 1) / 3;
+  return static_cast<uint8_t>(detail == Detail::kFine ? ninths * (kCertaintySteps / 9)
+                                                      : thirds * (kCertaintySteps / 3));
 }
 
 uint8_t surpriseSteps(float surprise) {

@@ -3,13 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
 #include "shoal/demand.h"
+#include "shoal/topics/cell_certainty.h"
 #include "shoal/topics/cell_words.h"
+#include "shoal/topics/fixed_log.h"
 #include "shoal/topics/schedule.h"
 #include "shoal/topics/twin_labels.h"
 
@@ -56,6 +59,9 @@ CellLabelModel::CellLabelModel(const CellLabelHyperparameters& hyperparameters,
       robot_(static_cast<uint64_t>(number(robot))),
       counts_(groups, hyperparameters.max_topics, hyperparameters.beta),
       slots_(hyperparameters.max_topics) {
+  for (const world::WordGroup& group : counts_.groups())
+    log_group_size_ += int64_t{fixedLog2(static_cast<uint64_t>(group.size))};
+  log_group_size_ /= std::ssize(counts_.groups());
   const auto stride = static_cast<size_t>(counts_.stride());
   cells_of_.resize(stride);
   scores_.resize(stride);
@@ -147,17 +153,27 @@ void CellLabelModel::redraw(int32_t c, bool words_are_counted) {
   weighLabels(scores_, cell.num_words, alike_, scale_, weights_);
   Random random(hashCombine(seed_, kCellStream), robot_, static_cast<uint64_t>(c), cell.num_draws++);
   const int32_t drawn = drawLabel(weights_, random);
-  uint64_t sum = 0, twins = 0;
-  for (size_t k = 0; k < weights_.size(); ++k) {
-    sum += weights_[k];
-    if (twin_of_[k] == twin_of_[static_cast<size_t>(drawn)]) twins += weights_[k];
-  }
-  cell.certainty = static_cast<float>(static_cast<double>(twins) / static_cast<double>(sum));
+  cell.certainty = certaintyOf(cell, drawn);
 
   if (words_are_counted && drawn == old) return;
   if (words_are_counted) counts_.remove(cell.words, old);
   counts_.add(cell.words, drawn);
   relabel(cell, drawn);
+}
+
+// By scores_, the likelihoods of its words. Where there is no other topic, chance is the other.
+float CellLabelModel::certaintyOf(const LabelledCell& cell, int32_t label) const {
+  const int64_t chance = -cell.num_words * log_group_size_;
+  int64_t own = scores_[static_cast<size_t>(label)];
+  int64_t other = std::numeric_limits<int64_t>::min();
+  for (int32_t k = 0; k < slots_.end(); ++k) {
+    if (!slots_.isOpen(k)) continue;
+    const auto i = static_cast<size_t>(k);
+    int64_t& best = twin_of_[i] == twin_of_[static_cast<size_t>(label)] ? own : other;
+    best = std::max(best, scores_[i]);
+  }
+  if (other == std::numeric_limits<int64_t>::min()) other = chance;
+  return cellCertainty(own, other, cell.num_words, log_group_size_);
 }
 
 // Opens and retires labels as cells come and go.

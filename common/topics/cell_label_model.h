@@ -70,8 +70,8 @@ class CellLabelModel final : public Learner {
 
   /// Topics as exact counts, every cell with its label.
   ///
-  /// The certainty of a cell is the sum of p(z = k) over its topic's labels, in the conditional that it was
-  /// last drawn from. Its surprise is how unusual, compared with all the robot had seen, its words were to the
+  /// The certainty of a cell is cellCertainty() of its topic, the best of its labels speaking for a topic, when
+  /// the cell was last drawn. Its surprise is how unusual, compared with all the robot had seen, its words were to the
   /// model of the whole map just before they joined it, in the image that surprised most.
   ///
   /// Cost: O(V K + cells log cells).
@@ -106,7 +106,7 @@ class CellLabelModel final : public Learner {
     world::CellIndex index;
     std::vector<world::WordCount> words;  // ascending, all images together
     int64_t num_words = 0;                // the sum of their counts
-    float certainty = 0;                  // p(z = slot) when it was last drawn
+    float certainty = 0;                  // when it was last drawn
     float surprise = 0;
     int32_t slot = -1;                    // its label; -1 before the first draw
     uint32_t num_draws = 0;               // names its next random numbers
@@ -117,6 +117,7 @@ class CellLabelModel final : public Learner {
   uint64_t identity() const;
   int32_t cellFor(const world::CellIndex& index);
   void redraw(int32_t c, bool words_are_counted);
+  float certaintyOf(const LabelledCell& cell, int32_t label) const;
   void relabel(LabelledCell& cell, int32_t slot);
   void findTwins();
   void leaveTwins(int32_t slot);
@@ -127,6 +128,7 @@ class CellLabelModel final : public Learner {
   const ConditionalScale scale_;
   const uint64_t seed_;
   const uint64_t robot_;
+  int64_t log_group_size_ = 0;  // mean of log2 over groups, in units of 2^-16
   LabelCounts counts_;
   TopicSlots slots_;
   Neighborhood neighborhood_;

@@ -40,13 +40,18 @@ TEST(QuantizeTest, CoarseRoundsToAHundredth) {
   EXPECT_EQ(quantize({{0, 3}, {9, 4}}, Detail::kCoarse), quantize({{0, 3}, {9, 4}}));
 }
 
-TEST(QuantizeTest, CoarseCertaintiesAreSevenths) {
-  for (int step = 0; step <= kCertaintySteps; ++step) {
-    const float certainty = static_cast<float>(step) / kCertaintySteps;
-    EXPECT_EQ(certaintySteps(certainty), step);
+// In steps of 1/63; what was told is told again as it is.
+TEST(QuantizeTest, CertaintiesAreNinthsAndCoarseOnesThirds) {
+  for (int i = 0; i <= 1000; ++i) {
+    const float certainty = static_cast<float>(i) / 1000;
+    const int fine = certaintySteps(certainty);
+    EXPECT_EQ(fine % 7, 0);
+    EXPECT_LE(std::abs(static_cast<float>(fine) / kCertaintySteps - certainty), 1 / 18.f + 1e-6f);
+    EXPECT_EQ(certaintySteps(static_cast<float>(fine) / kCertaintySteps), fine);
     const int coarse = certaintySteps(certainty, Detail::kCoarse);
-    EXPECT_EQ(coarse % 9, 0);
-    EXPECT_LE(std::abs(coarse - step), 4);
+    EXPECT_EQ(coarse % 21, 0);
+    EXPECT_LE(std::abs(coarse - fine), 7);
+    EXPECT_EQ(certaintySteps(static_cast<float>(coarse) / kCertaintySteps, Detail::kCoarse), coarse);
   }
 }
 
@@ -74,7 +79,7 @@ TEST(WholePiecesTest, ACoarseBeliefTellsCoarsely) {
   coarse.detail = Detail::kCoarse;
   const auto pieces = wholePieces(coarse);
   EXPECT_EQ(std::get<TopicPart>(pieces[0].content).words, quantize(coarse.topics[0].words, Detail::kCoarse));
-  EXPECT_EQ(std::get<CertaintyPart>(pieces[4].content).cells[0].steps, 18);  // 15.75 of 63, so 2 of 7
+  EXPECT_EQ(std::get<CertaintyPart>(pieces[4].content).cells[0].steps, 21);  // two ninths, so a third
   EXPECT_EQ(std::get<BrickPart>(pieces[2].content).cells[0].topic, world::TopicId{0});
 }
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "shoal/topics/cell_label_model.h"
+#include "shoal/topics/cell_certainty.h"
+#include "shoal/topics/fixed_log.h"
 
 #include <gtest/gtest.h>
 
@@ -237,19 +239,21 @@ TEST(CellLabelModelTest, RecoversPlantedTopics) {
   }
 }
 
-// The first cell finds two empty labels: even odds. Its neighbour
-// then sees one label with a word like its own, (1 + 1) / (1 + 3) against 1 / 3, and a neighbour alike.
-TEST(CellLabelModelTest, CertaintyIsTheProbabilityOfWhatWasDrawn) {
+// The first cell finds empty labels and chance: 1 / 3 each. Its neighbour then sees one label with a word
+// like its own, (1 + 1) / (1 + 3), and chance where that is its own label, or an empty one, 1 / 3, against
+// it.
+TEST(CellLabelModelTest, CertaintyComesFromTheBestTopics) {
+  const auto chance = -static_cast<int64_t>(fixedLog2(3));
+  const auto certainty = [&](int64_t own, int64_t other) { return cellCertainty(own, other, 1, -chance); };
   for (uint64_t seed = 0; seed < 20; ++seed) {
     CellLabelModel model({.max_topics = 3, .cells_per_topic = 1, .evidence = 0.5, .beta = 1, .coupling = 0.7},
                          kThreeWords, seed, RobotId{0});
     model.add(image(0, {{{9, 0, 0}, {{0, 1}}}}));
-    EXPECT_NEAR(model.snapshot().cells[0].certainty, 1.0 / 2, 1e-4);  // one cell seen: two labels
+    EXPECT_NEAR(model.snapshot().cells[0].certainty, certainty(chance, chance), 1e-4);
     model.add(image(1, {{{9, 1, 0}, {{0, 1}}}}));
     const std::vector<CellLabel> cells = model.snapshot().cells;
-    const double alike = std::sqrt(2.0 / 4) * std::exp(0.7), other = std::sqrt(1.0 / 3);
     const bool agree = cells[0].topic == cells[1].topic;
-    EXPECT_NEAR(cells[1].certainty, (agree ? alike : other) / (alike + other), 1e-4);
+    EXPECT_NEAR(cells[1].certainty, agree ? certainty(-kLogOne, chance) : certainty(chance, -kLogOne), 1e-4);
   }
 }
 
@@ -419,7 +423,7 @@ TEST(CellLabelModelTest, EveryBuildGivesTheSameBytes) {
                                    .visits_per_cell = 3};
   uint64_t digest = 0;
   for (const char c : mission(h, 1, RobotId{12}, 20)) digest = hashCombine(digest, static_cast<uint8_t>(c));
-  EXPECT_EQ(digest, 10365725611417515016u);
+  EXPECT_EQ(digest, 6417820602873971108u);
 }
 
 // Other models, snapshots and copies in between leave a model's numbers alone.
