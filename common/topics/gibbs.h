@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "shoal/random.h"
+#include "shoal/topics/aligned.h"
 #include "shoal/topics/cell_words.h"
+#include "shoal/topics/gibbs_kernel.h"
 #include "shoal/topics/hyperparameters.h"
 #include "shoal/topics/topic_slots.h"
 
@@ -21,14 +24,22 @@ namespace shoal::topics {
 /// all counts without the word itself: only its own topic's are decremented. g_k is 1 for a topic that has
 /// words, γ for one unused slot, 0 for the other unused ones; with γ = 0 it is 1 for all K, and K is fixed.
 /// A word that is the last of its topic counts its own slot as the unused one, so it may stay and keep the
-/// topic's id. The very first word has no other
-/// choice than the first slot, however small γ. Once the ids have run out nothing new opens.
+/// topic's id. The very first word has no other choice than the first slot, however small γ. Once the ids
+/// have run out nothing new opens.
 ///
-/// Numbers: double throughout, one fixed order of summation, no library functions, so any build that obeys
-/// IEEE 754 (no fast-math, no contraction) gives the same bytes. A new topic may have a probability of
-/// 1e-12; 53 random bits resolve it.
+/// The order of draws: up to kMaxChains cells are entered at once, none of which may adjoin another, and
+/// their words are drawn in turns, one of each cell, in blocks. n_kw and n_ck are always exact. n_k in the
+/// denominator is as it was at the start of the block, which is so short that n_k + Vβ changes by a 16th at
+/// most; where a block would be of one word, and where a topic might close or the ids run out within it,
+/// words are drawn one by one with everything exact. A topic that empties within a block and gets words
+/// again before its end has never been gone.
 ///
-/// Cost: O(highest open slot) per word, one row of the word-major table. Memory V x K int32.
+/// Whether a topic opens is drawn apart, with 53 random bits in double: its probability may be 1e-12. Which
+/// of the open ones it is, is drawn with 23 bits in float, in one fixed order of summation. No library
+/// functions: any build that obeys IEEE 754 (no fast-math, no contraction), with any instruction set, gives
+/// the same bytes.
+///
+/// Cost: O(K) per word, one row of the word-major table. Memory V x K int32.
 ///
 /// Source: topics of S. Jamieson et al. 2021, §IV-A; Y. Girdhar et al. 2016, arXiv:1509.07979. We differ
 /// from the 2013 code, which subtracts the word from every topic to avoid locks.
@@ -38,29 +49,36 @@ class Gibbs {
   ///         table would exceed 2^31 entries.
   Gibbs(const Hyperparameters& hyperparameters, int32_t vocabulary_size);
 
-  /// Length of every histogram over slots: K rounded up to a whole number of vector registers. The slots
-  /// from K on are never used.
-  int32_t stride() const { return stride_; }
+  /// Length of every histogram over slots: K rounded up to a whole number of vectors. The slots from K on
+  /// are never used.
+  int32_t stride() const { return table_.num_vectors * kLanes; }
 
-  /// Draws a first topic for each token (slot -1) from the conditional, in order.
-  /// @param cell_counts      n_ck of the tokens' cell, stride() long; kept up to date.
-  /// @param neighbor_counts  g_σ Σ n_gk of its neighbours, stride() long.
-  void assign(std::span<Token> tokens, std::span<int32_t> cell_counts,
-              std::span<const double> neighbor_counts, Random random);
+  /// Enters a cell whose tokens are to be drawn anew; those of slot -1 have no topic yet. Fewer than
+  /// kMaxChains cells may be entered. Tokens and counts must stay where they are until the cell has left.
+  /// @param cell             Its name in entered().
+  /// @param cell_counts      n_ck of all the cell's tokens, stride() long; kept up to date.
+  /// @param neighbor_counts  g_σ Σ n_gk of its neighbours, stride() long; copied.
+  void enter(int32_t cell, std::span<Token> tokens, std::span<int32_t> cell_counts,
+             std::span<const float> neighbor_counts, Random random);
 
-  /// Takes each token out, draws its topic anew and puts it back, in order. Parameters as assign().
+  /// The cells entered, oldest first.
+  int32_t numEntered() const { return num_chains_; }
+  int32_t entered(int32_t i) const { return chains_[static_cast<size_t>(i)].cell; }
+
+  /// Draws one block. Cells whose tokens are all drawn have left afterwards. At least one must be entered.
+  void advance();
+
+  /// enter() and advance() of a cell alone.
   void resample(std::span<Token> tokens, std::span<int32_t> cell_counts,
-                std::span<const double> neighbor_counts, Random random);
+                std::span<const float> neighbor_counts, Random random);
 
   /// Adds counts that belong to no token (`sign` 1) or takes them away again (-1). Opens and closes the slot
-  /// as words do.
+  /// as words do. No cell may be entered.
   void addCounts(int32_t slot, std::span<const world::WordCount> words, int sign);
 
   /// Makes a fresh table's topics what others were: names and places, to which addCounts() then gives the
   /// words. As TopicSlots::restore().
-  void restoreTopics(int32_t num_ids_used, std::span<const TopicSlots::Named> open) {
-    slots_.restore(num_ids_used, open);
-  }
+  void restoreTopics(int32_t num_ids_used, std::span<const TopicSlots::Named> open);
 
   int32_t vocabularySize() const { return vocabulary_size_; }
   const TopicSlots& slots() const { return slots_; }
@@ -68,35 +86,35 @@ class Gibbs {
 
   /// n_kw of one word for all slots, stride() long.
   std::span<const int32_t> wordCounts(int32_t word) const;
-  /// n_k
-  int64_t topicCount(int32_t slot) const { return topic_counts_[static_cast<size_t>(slot)]; }
+  /// n_k. No cell may be entered.
+  int64_t topicCount(int32_t slot) const { return outside_[static_cast<size_t>(slot)]; }
 
  private:
-  void enter(std::span<const int32_t> cell_counts, std::span<const double> neighbor_counts);
-  void weigh(const int32_t* row);
-  int32_t draw(double uniform);
-  void put(const Token& token, std::span<int32_t> cell_counts, std::span<const double> neighbor_counts);
-  void take(int32_t word, int32_t slot, std::span<int32_t> cell_counts,
-            std::span<const double> neighbor_counts);
-  void updateFactors(int32_t slot, int32_t cell_count, double neighbor_count);
-  double openness(int32_t slot) const;
-  int32_t* row(int32_t word) { return word_counts_.data() + static_cast<ptrdiff_t>(word) * stride_; }
+  // What the kernel reads. Its pointers lead into the members below and are set before each use.
+  const Table& table();
+  void noteSlots();
+  Totals refreshAll(int32_t num_running);
+  int32_t blockLength(const Totals& totals) const;
+  void drawBlock(int32_t num_running, int32_t num_rounds);
+  void drawOne();
+  void openTopic(Chain& chain);
+  void leave();
+  int32_t* row(int32_t word) { return word_counts_.data() + static_cast<ptrdiff_t>(word) * stride(); }
 
   const Hyperparameters hyperparameters_;
   const int32_t vocabulary_size_;
-  const int32_t stride_;
-  const double beta_sum_;  // Vβ
   TopicSlots slots_;
-  std::vector<int32_t> word_counts_;   // n_kw, word-major: V rows of stride_
-  std::vector<int64_t> topic_counts_;  // n_k
-  std::vector<double> inverse_;        // 1 / (n_k + Vβ)
-  std::vector<double> inverse_less_;   // 1 / (n_k - 1 + Vβ), for a word's own topic
+  Table table_;
+  AlignedVector<int32_t> word_counts_;   // n_kw, word-major: V rows of stride()
+  AlignedVector<int32_t> outside_;       // n_k without the words of the cells entered
+  AlignedVector<int32_t> topic_counts_;  // n_k
+  AlignedVector<int32_t> open_;          // -1: the slot has a topic
+  AlignedVector<float> eligible_;        // 1: the slot may be drawn
+  AlignedVector<float> inverse_;         // 1 / (n_k + Vβ), 0 where it may not
+  bool one_by_one_ = false;              // what opens or closes within a block would matter
 
-  // Of the cell being visited; 0 outside the slots that may be drawn.
-  int32_t width_ = 0;                // slots looped over, a multiple of 4
-  std::vector<double> factor_;       // g_k (N_ck + α) / (n_k + Vβ)
-  std::vector<double> factor_less_;  // (N_ck - 1 + α) / (n_k - 1 + Vβ)
-  std::vector<double> weight_;       // of one word
+  std::array<Chain, kMaxChains> chains_;
+  int32_t num_chains_ = 0;
 };
 
 }  // namespace shoal::topics

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "shoal/topics/neighborhood.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "shoal/demand.h"
@@ -52,6 +53,8 @@ std::span<const int32_t> Neighborhood::of(int32_t cell) const {
   const Links& links = links_[static_cast<size_t>(cell)];
   return {links.cells.data(), static_cast<size_t>(links.count)};
 }
+
+bool Neighborhood::adjoin(int32_t a, int32_t b) const { return std::ranges::find(of(a), b) != of(a).end(); }
 
 void Neighborhood::link(int32_t a, int32_t b) {
   Links& links = links_[static_cast<size_t>(a)];

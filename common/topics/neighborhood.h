@@ -30,6 +30,9 @@ class Neighborhood {
   /// Numbers of the adjoining cells, in order of their creation or the cell's own, whichever came later.
   std::span<const int32_t> of(int32_t cell) const;
 
+  /// Do two cells adjoin? Not a cell and itself.
+  bool adjoin(int32_t a, int32_t b) const;
+
  private:
   struct Links {
     std::array<int32_t, 6> cells;

@@ -16,6 +16,10 @@ namespace {
 constexpr uint64_t kCellStream = 0x746f706963730001;      // "topics", 1
 constexpr uint64_t kScheduleStream = 0x746f706963730002;  // "topics", 2
 
+uint32_t parityOf(const world::CellIndex& cell) {
+  return (static_cast<uint32_t>(cell.x) ^ static_cast<uint32_t>(cell.y) ^ static_cast<uint32_t>(cell.z)) & 1U;
+}
+
 }  // namespace
 
 TopicModel::TopicModel(const Hyperparameters& hyperparameters, int32_t vocabulary_size, uint64_t seed,
@@ -23,6 +27,7 @@ TopicModel::TopicModel(const Hyperparameters& hyperparameters, int32_t vocabular
     : hyperparameters_(hyperparameters),
       seed_(seed),
       robot_(static_cast<uint64_t>(number(robot))),
+      cell_stream_(hashCombine(hashCombine(seed, kCellStream), robot_)),
       gibbs_(hyperparameters, vocabulary_size),
       neighbor_counts_(static_cast<size_t>(gibbs_.stride())) {}
 
@@ -43,6 +48,7 @@ void TopicModel::add(const world::WordsInCells& words) {
   const int32_t num_known = numCells();
   const std::vector<double> bits = surprise(words);
   const std::vector<float> surprises = surprise_scale_.of(bits);
+  std::vector<int32_t> num_tokens;  // before this image
   for (size_t i = 0; i < words.cells.size(); ++i) {
     const world::CellWords& cell_words = words.cells[i];
     const int32_t c = cellFor(cell_words.cell);
@@ -52,14 +58,29 @@ void TopicModel::add(const world::WordsInCells& words) {
     cell.surprise = std::max(cell.surprise, surprises[i]);
     cell.seen_observation = observation_;
     cell.seen = time_;
+    num_tokens.push_back(static_cast<int32_t>(cell.tokens.size()));
     const std::vector<Token> fresh = tokens(cell_words);
-    const auto first = static_cast<ptrdiff_t>(cell.tokens.size());
     cell.tokens.insert(cell.tokens.end(), fresh.begin(), fresh.end());
-    gatherNeighbors(c, neighbor_counts_);
-    gibbs_.assign({cell.tokens.begin() + first, cell.tokens.end()}, countsOf(c), neighbor_counts_,
-                  nextRandom(c));
   }
-  for (int32_t c = num_known; c < numCells(); ++c) visit(c);
+  // Cells whose coordinates add up to an even number, then the others: none of either adjoins another.
+  std::vector<Visit> first_draws, first_visits;
+  for (const uint32_t parity : {0U, 1U}) {
+    for (size_t i = 0; i < latest_.size(); ++i) {
+      if (parityOf(words.cells[i].cell) == parity) {
+        first_draws.push_back(nextVisitOf(latest_[i], num_tokens[i]));
+      }
+    }
+  }
+  for (const uint32_t parity : {0U, 1U}) {
+    for (int32_t c = num_known; c < numCells(); ++c) {
+      if (parityOf(cells_[static_cast<size_t>(c)].index) == parity) first_visits.push_back(nextVisitOf(c, 0));
+    }
+  }
+  run(first_draws);
+  run(first_visits);
+  for (const Visit& visit : first_visits) {
+    num_resamples_ += std::ssize(cells_[static_cast<size_t>(visit.cell)].tokens);
+  }
   gibbs_.nameTopics(time_);
 }
 
@@ -70,10 +91,15 @@ void TopicModel::refine(int64_t resamples) {
   if (cells_.empty()) return;
   const int64_t start = num_resamples_;
   const int64_t budget = resamples - overrun_;
+  std::vector<Visit> visits;
   while (num_resamples_ - start < budget) {
     Random random(seed_, kScheduleStream, robot_, num_visits_++);
-    visit(nextVisit({hyperparameters_.tau, hyperparameters_.local_rate}, latest_, numCells(), random));
+    const VisitLaw law{hyperparameters_.tau, hyperparameters_.local_rate};
+    const int32_t c = nextVisit(law, latest_, numCells(), random);
+    visits.push_back(nextVisitOf(c, 0));
+    num_resamples_ += std::ssize(cells_[static_cast<size_t>(c)].tokens);
   }
+  run(visits);
   overrun_ = num_resamples_ - start - budget;
   gibbs_.nameTopics(time_);
 }
@@ -119,7 +145,7 @@ int32_t TopicModel::slotOf(world::TopicId id) const {
 Snapshot TopicModel::snapshot() const {
   Snapshot snapshot{gibbs_.vocabularySize(), topics(), {}};
   snapshot.cells.reserve(cells_.size());
-  std::vector<double> neighbor_counts(neighbor_counts_.size());
+  std::vector<float> neighbor_counts(neighbor_counts_.size());
   for (int32_t c = 0; c < numCells(); ++c) snapshot.cells.push_back(label(c, neighbor_counts));
   std::ranges::sort(snapshot.cells, {}, &CellLabel::cell);
   return snapshot;
@@ -163,26 +189,44 @@ int32_t TopicModel::cellFor(const world::CellIndex& index) {
   return c;
 }
 
-void TopicModel::visit(int32_t c) {
-  Cell& cell = cells_[static_cast<size_t>(c)];
-  gatherNeighbors(c, neighbor_counts_);
-  gibbs_.resample(cell.tokens, countsOf(c), neighbor_counts_, nextRandom(c));
-  num_resamples_ += static_cast<int64_t>(cell.tokens.size());
-}
-
-Random TopicModel::nextRandom(int32_t c) {
+TopicModel::Visit TopicModel::nextVisitOf(int32_t c, int32_t first) {
   const uint64_t draw = cells_[static_cast<size_t>(c)].num_draws++;
-  return Random(hashCombine(seed_, kCellStream), robot_, static_cast<uint64_t>(c), draw);
+  return {c, first, Random(cell_stream_, static_cast<uint64_t>(c), draw)};
 }
 
-void TopicModel::gatherNeighbors(int32_t c, std::span<double> counts) const {
-  std::ranges::fill(counts, 0.0);
+// Each visit begins as soon as fewer than kMaxChains others are under way, none of them in the same cell or
+// beside it; later ones wait for it.
+void TopicModel::run(const std::vector<Visit>& visits) {
+  auto visit = visits.begin();
+  while (visit != visits.end() || gibbs_.numEntered() > 0) {
+    for (; visit != visits.end() && mayEnter(visit->cell); ++visit) {
+      Cell& cell = cells_[static_cast<size_t>(visit->cell)];
+      gatherNeighbors(visit->cell, neighbor_counts_);
+      gibbs_.enter(visit->cell, std::span(cell.tokens).subspan(static_cast<size_t>(visit->first)),
+                   countsOf(visit->cell), neighbor_counts_, visit->random);
+    }
+    gibbs_.advance();
+  }
+}
+
+bool TopicModel::mayEnter(int32_t c) const {
+  if (gibbs_.numEntered() == kMaxChains) return false;
+  for (int32_t i = 0; i < gibbs_.numEntered(); ++i) {
+    const int32_t other = gibbs_.entered(i);
+    if (other == c || neighborhood_.adjoin(other, c)) return false;
+  }
+  return true;
+}
+
+void TopicModel::gatherNeighbors(int32_t c, std::span<float> counts) const {
+  std::ranges::fill(counts, 0.0F);
   if (hyperparameters_.neighbor_weight == 0.0) return;
   for (const int32_t neighbor : neighborhood_.of(c)) {
     const std::span<const int32_t> its = countsOf(neighbor);
-    for (size_t k = 0; k < counts.size(); ++k) counts[k] += its[k];
+    for (size_t k = 0; k < counts.size(); ++k) counts[k] += static_cast<float>(its[k]);
   }
-  for (double& count : counts) count *= hyperparameters_.neighbor_weight;
+  const auto weight = static_cast<float>(hyperparameters_.neighbor_weight);
+  for (float& count : counts) count *= weight;
 }
 
 std::span<int32_t> TopicModel::countsOf(int32_t c) {
@@ -195,7 +239,7 @@ std::span<const int32_t> TopicModel::countsOf(int32_t c) const {
   return std::span(cell_counts_).subspan(static_cast<size_t>(c) * stride, stride);
 }
 
-CellLabel TopicModel::label(int32_t c, std::span<double> neighbor_counts) const {
+CellLabel TopicModel::label(int32_t c, std::span<float> neighbor_counts) const {
   const TopicSlots& slots = gibbs_.slots();
   const std::span<const int32_t> counts = countsOf(c);
   gatherNeighbors(c, neighbor_counts);
@@ -205,13 +249,13 @@ CellLabel TopicModel::label(int32_t c, std::span<double> neighbor_counts) const 
   int32_t best = -1;
   for (int32_t k = 0; k < slots.end(); ++k) {
     const auto i = static_cast<size_t>(k);
-    mass += counts[i] + neighbor_counts[i];
+    mass += counts[i] + double{neighbor_counts[i]};
     if (!slots.isOpen(k)) continue;
     const int32_t lead = best < 0 ? 1 : counts[i] - counts[static_cast<size_t>(best)];
     if (lead > 0 || (lead == 0 && slots.id(k) < slots.id(best))) best = k;
   }
   const auto b = static_cast<size_t>(best);
-  const double certainty = (counts[b] + neighbor_counts[b] + alpha) / mass;
+  const double certainty = (counts[b] + double{neighbor_counts[b]} + alpha) / mass;
   const Cell& cell = cells_[static_cast<size_t>(c)];
   return {cell.index,    slots.id(best),        static_cast<float>(std::min(certainty, 1.0)),
           cell.surprise, cell.seen_observation, cell.seen};

@@ -97,12 +97,20 @@ class TopicModel final : public Learner {
  private:
   uint64_t identity() const;
   int32_t cellFor(const world::CellIndex& index);
-  void visit(int32_t cell);
-  Random nextRandom(int32_t cell);
-  void gatherNeighbors(int32_t cell, std::span<double> counts) const;
+
+  // Words of a cell to be drawn: those from `first` on.
+  struct Visit {
+    int32_t cell;
+    int32_t first;
+    Random random;
+  };
+  Visit nextVisitOf(int32_t cell, int32_t first);
+  void run(const std::vector<Visit>& visits);
+  bool mayEnter(int32_t cell) const;
+  void gatherNeighbors(int32_t cell, std::span<float> counts) const;
   std::span<int32_t> countsOf(int32_t cell);
   std::span<const int32_t> countsOf(int32_t cell) const;
-  CellLabel label(int32_t cell, std::span<double> neighbor_counts) const;
+  CellLabel label(int32_t cell, std::span<float> neighbor_counts) const;
   std::vector<TopicCounts> topics() const;
 
   struct Adopted {
@@ -114,11 +122,12 @@ class TopicModel final : public Learner {
   const Hyperparameters hyperparameters_;
   const uint64_t seed_;
   const uint64_t robot_;
+  const uint64_t cell_stream_;  // of random numbers
   Gibbs gibbs_;
   Neighborhood neighborhood_;
   std::vector<Cell> cells_;           // by number, as in neighborhood_
   std::vector<int32_t> cell_counts_;  // n_ck, one row of gibbs_.stride() a cell
-  std::vector<double> neighbor_counts_;
+  std::vector<float> neighbor_counts_;
   std::vector<Adopted> adopted_;  // in the count tables, not this robot's own
 
   SurpriseScale surprise_scale_;

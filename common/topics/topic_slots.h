@@ -31,7 +31,8 @@ class TopicSlots {
   int32_t end() const { return end_; }
 
   /// Is an id left for one more topic? Once false, it stays so but for topics that die unnamed.
-  bool canOpen() const { return next_id_ + num_unnamed_ <= world::kMaxTopicId; }
+  bool canOpen() const { return numIdsLeft() > 0; }
+  int32_t numIdsLeft() const { return world::kMaxTopicId + 1 - next_id_ - num_unnamed_; }
 
   void open(int32_t slot);
   void close(int32_t slot);

@@ -29,9 +29,8 @@ class TinyWorld {
     counts.assign(cells.size(), std::vector<int32_t>(static_cast<size_t>(gibbs.stride())));
   }
 
-  void assign(size_t c, uint64_t seed) {
-    gibbs.assign(cells[c], counts[c], neighborCounts(c), Random(seed, c));
-  }
+  // The first draw of words without a topic is no different.
+  void assign(size_t c, uint64_t seed) { resample(c, seed); }
   void resample(size_t c, uint64_t seed) {
     gibbs.resample(cells[c], counts[c], neighborCounts(c), Random(seed, c));
   }
@@ -40,11 +39,12 @@ class TinyWorld {
   }
 
   // Every cell adjoins the one before and the one after.
-  std::vector<double> neighborCounts(size_t c) const {
-    std::vector<double> sum(static_cast<size_t>(gibbs.stride()));
+  std::vector<float> neighborCounts(size_t c) const {
+    std::vector<float> sum(static_cast<size_t>(gibbs.stride()));
     for (const size_t other : {c - 1, c + 1}) {
       if (other >= cells.size()) continue;
-      for (size_t k = 0; k < sum.size(); ++k) sum[k] += hyperparameters_.neighbor_weight * counts[other][k];
+      for (size_t k = 0; k < sum.size(); ++k)
+        sum[k] += static_cast<float>(hyperparameters_.neighbor_weight * counts[other][k]);
     }
     return sum;
   }
