@@ -237,9 +237,18 @@ std::vector<mapping::Mixture> MissionState::mixtures() const {
 }
 
 mapping::MissionView MissionState::view() const {
+  mapping::MissionView view = overview();
+  view.map = map();
+  return view;
+}
+
+mapping::MissionView MissionState::overview() const {
   mapping::MissionView view{.mission = mission_,
                             .cell_size_m = cellSize(),
-                            .map = map(),
+                            .map = {.cells = {},
+                                    .correspondences = fused_.correspondences(),
+                                    .labels = fused_.labels(),
+                                    .state_digest = fused_.stateDigest()},
                             .state_digest = beliefs_.digest(),
                             .map_digest = mapDigest(),
                             .nodes = {}};

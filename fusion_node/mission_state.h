@@ -99,6 +99,8 @@ class MissionState {
 
   /// Everything as one value to ask questions of, with the map as of the last refresh.
   mapping::MissionView view() const;
+  /// The same without the map's cells. Cost: O(nodes).
+  mapping::MissionView overview() const;
 
   const matching::MatcherOptions& matcher() const { return matcher_; }
 

@@ -295,19 +295,33 @@ Json Node::answerEdit(const Json& question) {
 
 Json Node::answer(const Json& question) {
   if (mapping::isEdit(question)) return answerEdit(question);
-  state_.refreshMap();
-  if (question.value("query", "") == "ask") return answerAsk(question);
-  const mapping::MissionView known = view();
+  state_.refresh();
+  const std::string query = question.value("query", "");
+  if (query == "ask") return answerAsk(question);
+  if (query == "status") return answerStatus();
+  if (query == "map" && question.contains("has")) return answerChanges(question);
+  const mapping::MissionView known = query == "pictures" ? overview() : view();
   const auto beliefs = [this]() -> const mapping::BeliefStore& { return state_.beliefs(); };
-  if (question.value("query", "") == "map" && question.contains("has"))
-    return map_changes_.answer(known, question);
-  Json answer =
-      mapping::answer({known, beliefs, state_.matcher(), [this] { return state_.events(); }}, question);
-  if (question.value("query", "") == "status" && !answer.contains("error")) {
-    answer["silent_s"] = std::round(silence_.silentSeconds(wallMs()) * 10) / 10;
-    if (state_.beliefs().epochOf(mapping::kLibrary) >= 0) answer["library"] = libraryStatus();
-  }
+  return mapping::answer({known, beliefs, state_.matcher(), [this] { return state_.events(); }}, question);
+}
+
+// Asked several times a second: no cell is looked at.
+Json Node::answerStatus() const {
+  Json answer = mapping::statusAnswer(overview(), state_.fused().numCells());
+  answer["silent_s"] = std::round(silence_.silentSeconds(wallMs()) * 10) / 10;
+  if (state_.beliefs().epochOf(mapping::kLibrary) >= 0) answer["library"] = libraryStatus();
   return answer;
+}
+
+// Likewise: only cells that have changed.
+Json Node::answerChanges(const Json& question) {
+  const mapping::FusedMap& fused = state_.fused();
+  return map_changes_.answer({.cell_size_m = state_.cellSize(),
+                              .digest = fused.digest(),
+                              .labels = fused.labels(),
+                              .hashes = fused.columnHashes(),
+                              .cells_in = [&fused](const auto& columns) { return fused.cellsIn(columns); }},
+                             question);
 }
 
 // Says the price, and unless that is all, asks on the link.
@@ -334,7 +348,13 @@ Json Node::answerAsk(const Json& question) {
 }
 
 mapping::MissionView Node::view() const {
-  mapping::MissionView view = state_.view();
+  mapping::MissionView view = overview();
+  view.map = state_.map();
+  return view;
+}
+
+mapping::MissionView Node::overview() const {
+  mapping::MissionView view = state_.overview();
   if (options_.authentication != nullptr) view.strangers = strangersOf(*options_.authentication);
   return view;
 }

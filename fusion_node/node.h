@@ -64,9 +64,12 @@ class Node {
   void recall();
   void publishMap();
   mapping::MissionView view() const;
+  mapping::MissionView overview() const;
   void warnOfStrangers();
   void warnOfMixtures();
   nlohmann::ordered_json answer(const nlohmann::ordered_json& question);
+  nlohmann::ordered_json answerStatus() const;
+  nlohmann::ordered_json answerChanges(const nlohmann::ordered_json& question);
   nlohmann::ordered_json answerAsk(const nlohmann::ordered_json& question);
   nlohmann::ordered_json answerEdit(const nlohmann::ordered_json& question);
   void loadEdits();

@@ -76,6 +76,39 @@ void giveNames(std::vector<LabelSummary>& rows, const Judgement& judgement,
   }
 }
 
+struct ReadTile {
+  ReadTile(const TileIndex& at, const MapTile& what, const LabelTable& label) : index(at), tile(&what) {
+    for (const Voice& voice : what.voices()) labels.push_back(label.of(voice));
+  }
+  TileIndex index;
+  const MapTile* tile;
+  std::vector<world::GlobalLabel> labels;  // by voice
+};
+
+// Cells ascend by x, y, z. Tiles of one x, ascending by y, then z: each of their sixteen columns of x is gone
+// through in that order.
+void readRow(const std::vector<ReadTile>& row, std::vector<GlobalCell>& cells) {
+  for (size_t x = 0; x < kTileEdge; ++x) {
+    for (size_t from = 0, to = 0; from < row.size(); from = to) {
+      while (to < row.size() && row[to].index.y == row[from].index.y) ++to;
+      for (size_t i = x * kTileEdge; i < (x + 1) * kTileEdge; ++i) {
+        for (size_t r = from; r < to; ++r) {
+          const auto& [index, tile, labels] = row[r];
+          const TileColumns& newest = tile->newest();
+          if (newest.time[i] == 0) continue;
+          const uint16_t voice = newest.voice[i];
+          cells.push_back({{index.x * kTileEdge + static_cast<int32_t>(x),
+                            index.y * kTileEdge + static_cast<int32_t>(i % kTileEdge), index.z},
+                           labels[voice],
+                           tile->voices()[voice].first,
+                           tile->times()[newest.time[i] - 1u],
+                           static_cast<float>(newest.certainty[i]) / kCertaintySteps});
+        }
+      }
+    }
+  }
+}
+
 }  // namespace
 
 void FusedMap::update(const BeliefStore& beliefs, const matching::MatcherOptions& options) {
@@ -247,47 +280,47 @@ std::vector<LabelSummary> FusedMap::summarize(const StackedTopics& stacked) cons
   return summaries;
 }
 
-// Cells ascend by x, y, z. Tiles of one x lie side by side and ascend by y, then z: each of their sixteen
-// columns of x is gone through in that order.
+std::map<BrickColumn, uint64_t> FusedMap::columnHashes() const {
+  std::map<BrickColumn, uint64_t> hashes;
+  for (const auto& [index, tile] : tiles_) {
+    uint64_t sum = 0;
+    for (const MapTile::Tally& tally : tile.tallies())
+      sum += tally.hash * labelFactor(label_.of(tally.voice));
+    if (!tile.tallies().empty()) hashes.try_emplace(hashes.end(), {index.x, index.y}, 0)->second += sum;
+  }
+  return hashes;
+}
+
 GlobalMap FusedMap::map() const {
   GlobalMap map;
   map.correspondences = correspondences_;
   map.labels = labels_;
   map.state_digest = state_digest_;
   map.cells.reserve(static_cast<size_t>(num_cells_));
-  struct Read {
-    TileIndex index;
-    const MapTile* tile;
-    std::vector<world::GlobalLabel> labels;  // by voice
-  };
-  std::vector<Read> row;
+  std::vector<ReadTile> row;
   for (auto at = tiles_.begin(); at != tiles_.end();) {
     row.clear();
-    for (const int32_t x = at->first.x; at != tiles_.end() && at->first.x == x; ++at) {
-      Read& read = row.emplace_back(Read{at->first, &at->second, {}});
-      for (const Voice& voice : at->second.voices()) read.labels.push_back(label_.of(voice));
-    }
-    for (size_t x = 0; x < kTileEdge; ++x) {
-      for (size_t from = 0, to = 0; from < row.size(); from = to) {
-        while (to < row.size() && row[to].index.y == row[from].index.y) ++to;
-        for (size_t i = x * kTileEdge; i < (x + 1) * kTileEdge; ++i) {
-          for (size_t r = from; r < to; ++r) {
-            const auto& [index, tile, labels] = row[r];
-            const TileColumns& newest = tile->newest();
-            if (newest.time[i] == 0) continue;
-            const uint16_t voice = newest.voice[i];
-            map.cells.push_back({{index.x * kTileEdge + static_cast<int32_t>(x),
-                                  index.y * kTileEdge + static_cast<int32_t>(i % kTileEdge), index.z},
-                                 labels[voice],
-                                 tile->voices()[voice].first,
-                                 tile->times()[newest.time[i] - 1u],
-                                 static_cast<float>(newest.certainty[i]) / kCertaintySteps});
-          }
-        }
-      }
-    }
+    for (const int32_t x = at->first.x; at != tiles_.end() && at->first.x == x; ++at)
+      row.emplace_back(at->first, at->second, label_);
+    readRow(row, map.cells);
   }
   return map;
+}
+
+std::vector<GlobalCell> FusedMap::cellsIn(const std::set<BrickColumn>& columns) const {
+  std::vector<GlobalCell> cells;
+  std::vector<ReadTile> row;
+  for (auto column = columns.begin(); column != columns.end();) {
+    row.clear();
+    for (const int32_t x = column->first; column != columns.end() && column->first == x; ++column) {
+      const auto [_, y] = *column;
+      for (auto at = tiles_.lower_bound({x, y, INT32_MIN});
+           at != tiles_.end() && at->first.x == x && at->first.y == y; ++at)
+        row.emplace_back(at->first, at->second, label_);
+    }
+    readRow(row, cells);
+  }
+  return cells;
 }
 
 }  // namespace shoal::mapping

@@ -41,7 +41,12 @@ class FusedMap {
   uint64_t digest() const { return digest_; }  ///< that of map(), but made of sums
   int64_t numCells() const { return num_cells_; }
   GlobalMap map() const;  ///< Cost: O(cells), in order without sorting.
-                          /// @}
+  /// A hash of what each column of bricks shows, labels included; columns without cells are left out.
+  /// Cost: O(tiles).
+  std::map<BrickColumn, uint64_t> columnHashes() const;
+  /// The cells of map() in these columns, in its order. Cost: O(their cells).
+  std::vector<GlobalCell> cellsIn(const std::set<BrickColumn>& columns) const;
+  /// @}
 
  private:
   using BrickIndex = std::array<int32_t, 3>;

@@ -3,11 +3,15 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "shoal/world/ids.h"
 
 namespace shoal::mapping {
+
+/// A column of bricks, named by x and y of their index.
+using BrickColumn = std::pair<int32_t, int32_t>;
 
 /// A cell of the fused map, as the robot that saw it last labels it.
 struct GlobalCell {

@@ -2,89 +2,88 @@
 #include "shoal/mapping/map_changes.h"
 
 #include <algorithm>
-#include <iterator>
 #include <nlohmann/json.hpp>
-#include <set>
-#include <vector>
+#include <utility>
 
 #include "shoal/mapping/map_files.h"
+#include "shoal/mapping/queries.h"
 
 namespace shoal::mapping {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using Block = std::pair<int32_t, int32_t>;
 
-constexpr int kShift = 6;          // 64 columns
 constexpr size_t kRemembered = 4;  // several may ask in turn
 
-Block blockOf(const world::CellIndex& cell) { return {cell.x >> kShift, cell.y >> kShift}; }
-
-std::map<Block, uint64_t> hashesOf(const GlobalMap& map) {
-  std::map<Block, uint64_t> hashes;
-  Block last{};
-  uint64_t* sum = nullptr;
-  for (const GlobalCell& c : map.cells) {  // ascending: neighbours are mostly of one block
-    if (const Block block = blockOf(c.cell); sum == nullptr || block != last) {
-      sum = &hashes[block];
-      last = block;
-    }
-    *sum += cellHash(c.cell, c.robot, c.seen, c.certainty) * labelFactor(c.label);
+std::set<BrickColumn> differing(const std::map<BrickColumn, uint64_t>& before,
+                                const std::map<BrickColumn, uint64_t>& now) {
+  std::set<BrickColumn> columns;
+  for (const auto& [column, hash] : now) {
+    const auto was = before.find(column);
+    if (was == before.end() || was->second != hash) columns.insert(column);
   }
-  return hashes;
+  for (const auto& [column, hash] : before)
+    if (!now.contains(column)) columns.insert(column);
+  return columns;
 }
 
-std::set<Block> differing(const std::map<Block, uint64_t>& before, const std::map<Block, uint64_t>& now) {
-  std::set<Block> blocks;
-  for (const auto& [block, hash] : now) {
-    const auto was = before.find(block);
-    if (was == before.end() || was->second != hash) blocks.insert(block);
-  }
-  for (const auto& [block, hash] : before)
-    if (!now.contains(block)) blocks.insert(block);
-  return blocks;
-}
+BrickColumn columnOf(const world::CellIndex& cell) { return {cell.x >> 4, cell.y >> 4}; }
 
 }  // namespace
 
-Json MapChanges::answer(const MissionView& view, const Json& question) {
-  const std::string has = question.at("has"), digest = digestText(view.map_digest);
-  const world::Grid grid(view.cell_size_m);
-  std::map<Block, uint64_t> now = hashesOf(view.map);
-  Json answer{{"cell_size_m", view.cell_size_m}, {"digest", digest}};
+// Brings the census of every column up to date.
+void MapChanges::count(const MapInColumns& map) {
+  std::erase_if(counted_, [&map](const auto& entry) { return !map.hashes.contains(entry.first); });
+  std::set<BrickColumn> stale;
+  for (const auto& [column, hash] : map.hashes) {
+    const auto known = counted_.find(column);
+    if (known == counted_.end() || known->second.hash != hash) stale.insert(column);
+  }
+  std::map<BrickColumn, std::vector<GlobalCell>> cells;
+  for (const GlobalCell& c : map.cells_in(stale)) cells[columnOf(c.cell)].push_back(c);
+  for (const auto& [column, list] : cells) counted_[column] = {map.hashes.at(column), censusOf(list)};
+}
+
+Json MapChanges::answer(const MapInColumns& map, const Json& question) {
+  const std::string has = question.at("has"), digest = digestText(map.digest);
+  const world::Grid grid(map.cell_size_m);
+  count(map);
+  LabelCensus census;
+  for (const auto& [column, counted] : counted_) add(census, counted.census);
+  Json answer{{"cell_size_m", map.cell_size_m}, {"digest", digest}};
+  GlobalMap part;
   const auto before = std::ranges::find(told_, has, &Told::digest);
   if (before == told_.end()) {
-    answer["global_map_csv"] = globalMapCsv(view.map, grid);
+    std::set<BrickColumn> all;
+    for (const auto& [column, hash] : map.hashes) all.insert(all.end(), column);
+    part.cells = map.cells_in(all);
   } else {
-    const std::set<Block> blocks = differing(before->blocks, now);
-    GlobalMap part;
-    std::ranges::copy_if(view.map.cells, std::back_inserter(part.cells),
-                         [&blocks](const GlobalCell& c) { return blocks.contains(blockOf(c.cell)); });
+    const std::set<BrickColumn> columns = differing(before->hashes, map.hashes);
+    part.cells = map.cells_in(columns);
     answer["since"] = has;
-    answer["blocks"] = blocks;
-    answer["global_map_csv"] = globalMapCsv(part, grid);
+    answer["columns"] = columns;
   }
-  answer["labels_csv"] = labelsCsv(view.map, grid);
+  answer["global_map_csv"] = globalMapCsv(part, grid);
+  answer["labels_csv"] = labelsCsv(map.labels, areasOf(census, grid));
+  answer["labels"] = labelRows(map.labels, census, grid);
   std::erase_if(told_, [&digest](const Told& told) { return told.digest == digest; });
-  told_.push_back({digest, std::move(now)});
+  told_.push_back({digest, map.hashes});
   if (told_.size() > kRemembered) told_.pop_front();
   return answer;
 }
 
-std::string takeChanges(GlobalMap& map, const Json& answer, const std::string& origin) {
+MapChange readChange(const Json& answer, const std::string& origin) {
   const world::Grid grid(answer.at("cell_size_m").get<double>());
-  GlobalMap part = parseGlobalMap(answer.at("global_map_csv"), answer.at("labels_csv"), grid, origin);
-  if (answer.contains("blocks")) {
-    const auto blocks = answer.at("blocks").get<std::set<Block>>();
-    std::erase_if(map.cells, [&blocks](const GlobalCell& c) { return blocks.contains(blockOf(c.cell)); });
-    std::vector<GlobalCell> merged;
-    merged.reserve(map.cells.size() + part.cells.size());
-    std::ranges::merge(map.cells, part.cells, std::back_inserter(merged), {}, &GlobalCell::cell,
-                       &GlobalCell::cell);
-    part.cells = std::move(merged);
+  MapChange change;
+  change.part = parseGlobalMap(answer.at("global_map_csv"), answer.at("labels_csv"), grid, origin);
+  change.is_whole = !answer.contains("columns");
+  if (!change.is_whole) change.columns = answer.at("columns").get<std::set<BrickColumn>>();
+  change.digest = answer.value("digest", "");
+  const auto is_told = [&change](const GlobalCell& c) { return change.columns.contains(columnOf(c.cell)); };
+  if (!change.is_whole && !std::ranges::all_of(change.part.cells, is_told)) {
+    throw std::runtime_error(origin + " told of cells outside the columns that it named");
   }
-  map = std::move(part);
-  return answer.value("digest", "");
+  return change;
 }
 
 }  // namespace shoal::mapping

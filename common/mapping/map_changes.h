@@ -3,44 +3,65 @@
 
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <map>
+#include <set>
 #include <string>
-#include <utility>
+#include <vector>
 
 #include <nlohmann/json_fwd.hpp>
 
 #include "shoal/mapping/global_map.h"
-#include "shoal/mapping/queries.h"
+#include "shoal/mapping/label_census.h"
 
 namespace shoal::mapping {
 
+/// A map that is told in pieces: FusedMap has one at hand.
+struct MapInColumns {
+  double cell_size_m = 1;
+  uint64_t digest = 0;
+  const std::vector<LabelSummary>& labels;
+  std::map<BrickColumn, uint64_t> hashes;  ///< of what each column of bricks shows; none for empty ones
+  std::function<std::vector<GlobalCell>(const std::set<BrickColumn>&)> cells_in;  ///< ascending by cell
+};
+
 /// Tells a growing map again and again at the cost of what has changed: to {"query": "map", "has": DIGEST} it
-/// answers as to
-/// {"query": "map"}, with the map's "digest"; and when the map of that digest is among the last few that it
-/// told, with "since": DIGEST and "blocks": [[x, y], ...], the squares of 64 x 64 columns that look different
-/// since, and the cells of these alone.
+/// answers as to {"query": "map"}, with the map's "digest" and the rows of {"query": "labels"}; and when the
+/// map of that digest is among the last few that it told, with "since": DIGEST and "columns": [[x, y], ...],
+/// the squares of 16 x 16 columns that look different since, and the cells of these alone.
 class MapChanges {
  public:
   /// @param question  "has": sixteen hexadecimal digits, or "" for somebody who has nothing yet.
   /// @throws nlohmann::json::exception when "has" is no text.
-  /// Cost: O(cells) hashes, text for the cells that are told.
-  nlohmann::ordered_json answer(const MissionView& view, const nlohmann::ordered_json& question);
+  /// Cost: O(columns of bricks); O(cells) for those that changed since the last question, and that are told.
+  nlohmann::ordered_json answer(const MapInColumns& map, const nlohmann::ordered_json& question);
 
  private:
-  using Block = std::pair<int32_t, int32_t>;
   struct Told {
     std::string digest;
-    std::map<Block, uint64_t> blocks;
+    std::map<BrickColumn, uint64_t> hashes;
   };
-  std::deque<Told> told_;  // the newest last
+  struct Counted {
+    uint64_t hash = 0;
+    LabelCensus census;
+  };
+  void count(const MapInColumns& map);
+
+  std::deque<Told> told_;                   // the newest last
+  std::map<BrickColumn, Counted> counted_;  // of the map that was asked for last
 };
 
-/// Brings a map up to date with an answer of MapChanges, or puts a whole one in its place. Correspondences
-/// are not told.
-/// @param map      what was told before; any other when the answer is whole.
-/// @param origin   for error messages.
-/// @returns the digest to ask with the next time; "" when the answerer knows nothing of changes.
+/// What an answer of MapChanges says.
+struct MapChange {
+  std::string digest;    ///< to ask with the next time; "" when the answerer knows nothing of changes
+  bool is_whole = true;  ///< `part` is all of the map
+  std::set<BrickColumn>
+      columns;     ///< else: those that `part` holds the cells of, and nothing where it has none
+  GlobalMap part;  ///< labels are always whole; correspondences are not told
+};
+
+/// Reads an answer. @param origin  for error messages.
 /// @throws std::runtime_error or nlohmann::json::exception when the answer is none.
-std::string takeChanges(GlobalMap& map, const nlohmann::ordered_json& answer, const std::string& origin);
+MapChange readChange(const nlohmann::ordered_json& answer, const std::string& origin);
 
 }  // namespace shoal::mapping

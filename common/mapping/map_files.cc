@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <sstream>
 #include <stdexcept>
 
@@ -33,12 +32,13 @@ float certaintyFrom(double written) {
 }  // namespace
 
 std::map<world::GlobalLabel, double> areas(const GlobalMap& map, const world::Grid& grid) {
-  std::map<world::GlobalLabel, std::set<std::pair<int32_t, int32_t>>> columns;
-  for (const GlobalCell& c : map.cells) columns[c.label].emplace(c.cell.x, c.cell.y);
+  return areasOf(censusOf(map.cells), grid);
+}
+
+std::map<world::GlobalLabel, double> areasOf(const LabelCensus& census, const world::Grid& grid) {
   std::map<world::GlobalLabel, double> areas;
-  for (const auto& [label, cells] : columns) {
-    areas[label] = static_cast<double>(cells.size()) * grid.cellSize() * grid.cellSize();
-  }
+  for (const auto& [label, count] : census)
+    areas[label] = static_cast<double>(count.columns) * grid.cellSize() * grid.cellSize();
   return areas;
 }
 
@@ -54,13 +54,17 @@ std::string globalMapCsv(const GlobalMap& map, const world::Grid& grid) {
 }
 
 std::string labelsCsv(const GlobalMap& map, const world::Grid& grid) {
-  const auto area = areas(map, grid);
+  return labelsCsv(map.labels, areas(map, grid));
+}
+
+std::string labelsCsv(const std::vector<LabelSummary>& labels,
+                      const std::map<world::GlobalLabel, double>& areas) {
   std::string csv = "label,name,cells,area_m2,robots,first_seen_s\n";
-  for (const LabelSummary& row : map.labels) {
+  for (const LabelSummary& row : labels) {
     std::string robots;
     for (const world::RobotId robot : row.robots) robots += (robots.empty() ? "" : ";") + name(robot);
     csv += std::to_string(number(row.label)) + ',' + mapping::quoted(row.name) + ',' +
-           std::to_string(row.cells) + ',' + fixed(area.at(row.label), 3) + ',' + robots + ',' +
+           std::to_string(row.cells) + ',' + fixed(areas.at(row.label), 3) + ',' + robots + ',' +
            fixed(row.first_seen.seconds(), 3) + '\n';
   }
   return csv;

@@ -70,10 +70,12 @@ NodeStatus nodeFromJson(const Json& json) {
   return n;
 }
 
-Json statusAnswer(const MissionView& view) {
+Json statusAnswer(const MissionView& view) { return statusAnswer(view, std::ssize(view.map.cells)); }
+
+Json statusAnswer(const MissionView& view, int64_t num_cells) {
   Json answer{{"mission_id", view.mission},
               {"cell_size_m", view.cell_size_m},
-              {"cells", view.map.cells.size()},
+              {"cells", num_cells},
               {"labels", view.map.labels.size()},
               {"digest", {{"state", digestText(view.state_digest)}, {"map", digestText(view.map_digest)}}},
               {"nodes", Json::array()}};
@@ -88,34 +90,29 @@ Json statusAnswer(const MissionView& view) {
 }
 
 Json labelsAnswer(const MissionView& view) {
-  const auto area = areas(view.map, world::Grid(view.cell_size_m));
-  struct Seen {
-    world::Timestamp last;
-    double certainty = 0;  // summed over the cells
-  };
-  std::map<world::GlobalLabel, Seen> seen;
-  for (const GlobalCell& c : view.map.cells) {
-    Seen& s = seen.try_emplace(c.label, Seen{c.seen}).first->second;
-    s.last = std::max(s.last, c.seen);
-    s.certainty += static_cast<double>(c.certainty);
-  }
+  return {{"labels", labelRows(view.map.labels, censusOf(view.map.cells), world::Grid(view.cell_size_m))}};
+}
+
+Json labelRows(const std::vector<LabelSummary>& labels, const LabelCensus& census, const world::Grid& grid) {
+  const auto area = areasOf(census, grid);
   Json rows = Json::array();
-  for (const LabelSummary& row : view.map.labels) {
+  for (const LabelSummary& row : labels) {
     Json robots = Json::array();
     for (const world::RobotId robot : row.robots) robots.push_back(name(robot));
-    const auto covered = area.find(row.label);
-    const Seen& s = seen[row.label];
+    const auto found = census.find(row.label);
+    const LabelCount count = found == census.end() ? LabelCount{} : found->second;
+    const double cells = static_cast<double>(std::max<int64_t>(row.cells, 1));
     rows.push_back(
         {{"label", number(row.label)},
          {"name", row.name},
          {"cells", row.cells},
-         {"area_m2", rounded(covered == area.end() ? 0.0 : covered->second, 1e3)},
+         {"area_m2", rounded(found == census.end() ? 0.0 : area.at(row.label), 1e3)},
          {"robots", std::move(robots)},
          {"first_seen_s", rounded(row.first_seen.seconds(), 1e3)},
-         {"last_seen_s", rounded(s.last.seconds(), 1e3)},
-         {"certainty", rounded(row.cells > 0 ? s.certainty / static_cast<double>(row.cells) : 0.0, 1e4)}});
+         {"last_seen_s", rounded(count.last_seen.seconds(), 1e3)},
+         {"certainty", rounded(static_cast<double>(count.certainty) / kCertaintySteps / cells, 1e4)}});
   }
-  return {{"labels", std::move(rows)}};
+  return rows;
 }
 
 namespace {

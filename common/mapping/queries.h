@@ -10,6 +10,7 @@
 
 #include "shoal/mapping/belief_store.h"
 #include "shoal/mapping/global_map.h"
+#include "shoal/mapping/label_census.h"
 #include "shoal/world/grid.h"
 
 namespace shoal::mapping {
@@ -68,7 +69,12 @@ struct MissionView {
 
 /// Answers as JSON objects; docs/operators.md shows one of each.
 nlohmann::ordered_json statusAnswer(const MissionView& view);
+/// The same of a view whose cells were left out, for they are many.
+nlohmann::ordered_json statusAnswer(const MissionView& view, int64_t num_cells);
 nlohmann::ordered_json labelsAnswer(const MissionView& view);
+/// The rows of labelsAnswer(). @param census  of the map's cells.
+nlohmann::ordered_json labelRows(const std::vector<LabelSummary>& labels, const LabelCensus& census,
+                                 const world::Grid& grid);
 /// A node as it stands in statusAnswer(), and back. @throws nlohmann::json::exception for a missing key.
 nlohmann::ordered_json toJson(const NodeStatus& node);
 NodeStatus nodeFromJson(const nlohmann::ordered_json& json);

@@ -183,8 +183,9 @@ HttpResponse Api::truth(const HttpRequest& request) const {
   }
   const auto tiles = truth_.tiles(*moment);
   if (!tiles) return error(503, "the truth is being found out");
-  return {.type = "application/octet-stream",
-          .body = encodeTiles(*tiles, 0, moment->cell_size_m, moment->base_s, moment->sequence, life_)};
+  return {
+      .type = "application/octet-stream",
+      .body = encodeTiles(*tiles, 0, {moment->cell_size_m, moment->base_s, moment->sequence, life_}, false)};
 }
 
 HttpResponse Api::exportedMap(const HttpRequest& request) const {
@@ -222,9 +223,12 @@ HttpResponse Api::map(const HttpRequest& request) const {
     if (asked >= static_cast<double>(moment->chain) && asked <= static_cast<double>(moment->sequence))
       since = static_cast<uint64_t>(asked);
   }
-  return {.type = "application/octet-stream",
-          .body = encodeTiles(moment->tiles, since, moment->cell_size_m, moment->base_s, moment->sequence,
-                              life_)};
+  const std::string* cells = find(request, "cells");
+  if (cells != nullptr && *cells != "all") throw std::invalid_argument("\"cells\" is all, or not there");
+  return {
+      .type = "application/octet-stream",
+      .body = encodeTiles(moment->tiles, since,
+                          {moment->cell_size_m, moment->base_s, moment->sequence, life_}, cells != nullptr)};
 }
 
 HttpResponse Api::asked(const Json& question) const {

@@ -11,6 +11,7 @@ function(embed path source type)
 endfunction()
 embed("/" "${WEB}/index.html" "text/html; charset=utf-8")
 embed("/page.js" "${WEB}/dist/page.js" "text/javascript; charset=utf-8")
+embed("/view3d.js" "${WEB}/dist/view3d.js" "text/javascript; charset=utf-8")
 embed("/page.css" "${WEB}/dist/page.css" "text/css; charset=utf-8")
 embed("/openapi.json" "${DOCS}/openapi.json" "application/json")
 file(WRITE "${OUT}" "// Written by embed.cmake.

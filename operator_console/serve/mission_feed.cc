@@ -23,8 +23,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 
-constexpr auto kAskEvery = std::chrono::milliseconds(200);
+constexpr auto kAskEvery = std::chrono::milliseconds(50);
 constexpr int kLeisure = 4;  // a map is asked for again after 4 times what it took: nodes have other work
+constexpr auto kPicturesEvery = std::chrono::seconds(2);
 constexpr size_t kMaxMoments = 64;      // of a live mission
 constexpr size_t kHistoryMoments = 32;  // of a recording
 constexpr size_t kMostPictures = 64;    // of a label
@@ -35,8 +36,7 @@ double timeOf(const mapping::MissionView& view) {
   return time_s;
 }
 
-Json coloredLabels(const mapping::MissionView& view) {
-  Json answer = mapping::labelsAnswer(view);
+Json colored(Json answer) {
   for (Json& row : answer["labels"]) {
     const Rgb c = colorOf(world::GlobalLabel{row["label"].get<int32_t>()});
     row["color"] = fmt::format("#{:02x}{:02x}{:02x}", c[0], c[1], c[2]);
@@ -130,42 +130,60 @@ void MissionFeed::setPhase(const std::string& phase, const std::string& problem)
   on_change_();
 }
 
-std::shared_ptr<Moment> MissionFeed::momentOf(const mapping::MissionView& view,
-                                              mapping::LabelPictures pictures, double time_s,
-                                              const Moment* before) {
-  if (!base_s_ && !view.map.cells.empty()) {
-    const auto oldest = std::ranges::min_element(view.map.cells, {}, &mapping::GlobalCell::seen);
+// A moment that lacks tiles, status and labels.
+std::shared_ptr<Moment> MissionFeed::begun(double time_s, double cell_size_m,
+                                           const std::vector<mapping::GlobalCell>& cells,
+                                           const Moment* before) {
+  if (!base_s_ && !cells.empty()) {
+    const auto oldest = std::ranges::min_element(cells, {}, &mapping::GlobalCell::seen);
     base_s_ = std::floor(oldest->seen.seconds());
   }
   auto moment = std::make_shared<Moment>();
   moment->sequence = ++sequence_;
   moment->chain = before != nullptr ? before->chain : moment->sequence;
   moment->time_s = time_s;
-  moment->cell_size_m = view.cell_size_m;
+  moment->cell_size_m = cell_size_m;
   moment->base_s = base_s_.value_or(0);
-  moment->tiles =
-      tilesOf(view.map, moment->base_s, moment->sequence, before != nullptr ? before->tiles : TileMap());
-  moment->status = mapping::statusAnswer(view);
-  moment->labels = coloredLabels(view);
-  if (before != nullptr && *before->pictures == pictures) {
-    moment->pictures = before->pictures;
-    moment->pictures_sequence = before->pictures_sequence;
-  } else {
-    moment->pictures = std::make_shared<const mapping::LabelPictures>(std::move(pictures));
-    moment->pictures_sequence = moment->sequence;
-  }
   return moment;
 }
 
-// Of a live mission: the newest joins the others, every second of which goes when there are many.
+namespace {
+
+void showPictures(Moment& moment, mapping::LabelPictures pictures, const Moment* before) {
+  if (before != nullptr && *before->pictures == pictures) {
+    moment.pictures = before->pictures;
+    moment.pictures_sequence = before->pictures_sequence;
+  } else {
+    moment.pictures = std::make_shared<const mapping::LabelPictures>(std::move(pictures));
+    moment.pictures_sequence = moment.sequence;
+  }
+}
+
+}  // namespace
+
+std::shared_ptr<Moment> MissionFeed::momentOf(const mapping::MissionView& view,
+                                              mapping::LabelPictures pictures, double time_s,
+                                              const Moment* before) {
+  auto moment = begun(time_s, view.cell_size_m, view.map.cells, before);
+  moment->tiles =
+      tilesOf(view.map, moment->base_s, moment->sequence, before != nullptr ? before->tiles : TileMap());
+  moment->status = mapping::statusAnswer(view);
+  moment->labels = colored(mapping::labelsAnswer(view));
+  showPictures(*moment, std::move(pictures), before);
+  return moment;
+}
+
+// Of a live mission: the newest joins the others, of which the one goes that leaves the shortest gap when
+// there are many, so that they stay spread over all of it.
 void MissionFeed::add(std::shared_ptr<const Moment> moment) {
   const std::lock_guard lock(mutex_);
-  if (moments_.size() >= kMaxMoments) {
-    std::vector<std::shared_ptr<const Moment>> kept;
-    for (size_t i = 0; i < moments_.size(); i += 2) kept.push_back(moments_[i]);
-    moments_ = std::move(kept);
-  }
   moments_.push_back(std::move(moment));
+  if (moments_.size() <= kMaxMoments) return;
+  size_t dropped = 1;
+  const auto gap = [this](size_t i) { return moments_[i + 1]->time_s - moments_[i - 1]->time_s; };
+  for (size_t i = 2; i + 1 < moments_.size(); ++i)
+    if (gap(i) < gap(dropped)) dropped = i;
+  moments_.erase(moments_.begin() + static_cast<std::ptrdiff_t>(dropped));
 }
 
 void MissionFeed::run() {
@@ -188,8 +206,8 @@ void MissionFeed::run() {
 
 // Until it is lost: throws then.
 void MissionFeed::watchNode() {
-  std::string digest;
-  Clock::time_point next_map;
+  looked_at_ = pictured_ = "";
+  next_map_ = next_pictures_ = {};
   for (;;) {
     {
       std::unique_lock lock(mutex_);
@@ -208,34 +226,55 @@ void MissionFeed::watchNode() {
         chronicle_.hear(node);
       }
     }
-    const auto last = now();
-    const std::string is = status.at("digest").dump() + status.at("labels").dump();
-    if (is != digest && Clock::now() >= next_map) {
-      const mapping::MissionView& view = node_map_.refresh(where_.node, status);
-      auto pictures = mapping::picturesFrom(
-          fusion_node::askNode(where_.node, {{"query", "pictures"}, {"most", kMostPictures}}));
-      auto moment = momentOf(view, std::move(pictures), std::max(time_s, timeOf(view)), last.get());
-      digest = is;
-      next_map = Clock::now() + node_map_.asking() * kLeisure;
-      {
-        const std::lock_guard lock(mutex_);
-        chronicle_.hearLabels(moment->time_s, moment->labels);
-      }
-      add(std::move(moment));
-      setPhase("live");
-      on_change_();
-    } else if (last && status != last->status) {  // the map is as it was; robots have moved
-      auto moment = std::make_shared<Moment>(*last);
-      moment->status = status;
-      moment->time_s = std::max(time_s, last->time_s);
-      {
-        const std::lock_guard lock(mutex_);
-        moments_.back() = std::move(moment);
-      }
-      setPhase("live");
-      on_change_();
-    }
+    lookAtNode(status, time_s);
   }
+}
+
+// Asks for what is new of the map at its pace, of the pictures at theirs.
+void MissionFeed::lookAtNode(const Json& status, double time_s) {
+  const auto last = now();
+  const std::string has = status.at("digest").dump() + status.at("labels").dump();
+  const auto is_due = [&has](const std::string& had, Clock::time_point next) {
+    return has != had && Clock::now() >= next;
+  };
+  const bool draws = is_due(looked_at_, next_map_), pictures = is_due(pictured_, next_pictures_);
+  std::shared_ptr<Moment> moment;
+  if (draws || pictures) {
+    const NodeMap::News news = node_map_.ask(where_.node);
+    next_map_ = Clock::now() + node_map_.asking() * kLeisure;
+    moment = begun(time_s, news.cell_size_m, news.change.part.cells, last.get());
+    moment->tiles =
+        changedTiles(news.change, moment->base_s, moment->sequence, last ? last->tiles : TileMap());
+    moment->labels = colored(news.labels);
+    moment->status = status;
+    if (pictures) {
+      showPictures(*moment,
+                   mapping::picturesFrom(
+                       fusion_node::askNode(where_.node, {{"query", "pictures"}, {"most", kMostPictures}})),
+                   last.get());
+      pictured_ = has;
+      next_pictures_ = Clock::now() + kPicturesEvery;
+    } else {
+      moment->pictures = last->pictures;
+      moment->pictures_sequence = last->pictures_sequence;
+    }
+    looked_at_ = has;
+    {
+      const std::lock_guard lock(mutex_);
+      chronicle_.hearLabels(time_s, moment->labels);
+    }
+    add(std::move(moment));
+  } else if (last && status != last->status) {  // the map is as it was; robots have moved
+    moment = std::make_shared<Moment>(*last);
+    moment->status = status;
+    moment->time_s = std::max(time_s, last->time_s);
+    const std::lock_guard lock(mutex_);
+    moments_.back() = std::move(moment);
+  } else {
+    return;
+  }
+  setPhase("live");
+  on_change_();
 }
 
 void MissionFeed::lookAtFiles() {

@@ -66,8 +66,11 @@ class MissionFeed {
   void watchNode();
   void lookAtFiles();
   void readHistory();
+  void lookAtNode(const nlohmann::ordered_json& status, double time_s);
   std::shared_ptr<Moment> momentOf(const mapping::MissionView& view, mapping::LabelPictures pictures,
                                    double time_s, const Moment* before);
+  std::shared_ptr<Moment> begun(double time_s, double cell_size_m,
+                                const std::vector<mapping::GlobalCell>& cells, const Moment* before);
   void add(std::shared_ptr<const Moment> moment);
   void setPhase(const std::string& phase, const std::string& problem = {});
 
@@ -81,7 +84,9 @@ class MissionFeed {
   std::optional<double> base_s_;
   std::vector<std::shared_ptr<const Moment>> moments_;  // by time
   Chronicle chronicle_;
-  NodeMap node_map_;  // of the feed's thread
+  NodeMap node_map_;                  // of the feed's thread, as what follows
+  std::string looked_at_, pictured_;  // what the node said it had when its map, its pictures were asked for
+  std::chrono::steady_clock::time_point next_map_, next_pictures_;
   std::thread thread_;
 };
 

@@ -4,27 +4,30 @@
 #include <chrono>
 #include <string>
 
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
 
-#include "shoal/mapping/queries.h"
+#include "shoal/mapping/map_changes.h"
 
 namespace shoal::console {
 
-/// The map of a running node, kept by asking for what has changed.
+/// The map as a running node tells it: whole the first time, then what has changed.
 class NodeMap {
  public:
-  /// Asks the node. @param status  its answer to "status", as new as the map is to be.
-  /// @throws std::runtime_error when the node does not answer, or not as one does; the next time all is asked
-  /// for.
-  const mapping::MissionView& refresh(const std::string& state_dir, const nlohmann::ordered_json& status);
+  struct News {
+    mapping::MapChange change;
+    double cell_size_m = 1;
+    nlohmann::ordered_json labels;  ///< as the answer to "labels"
+  };
 
-  /// How long the node took for the last answer; nothing for the whole map that a node tells once which tells
-  /// changes from then on.
+  /// Asks the node in a state folder.
+  /// @throws std::runtime_error when it does not answer, or nonsense; the next time it tells everything.
+  News ask(const std::string& state_dir);
+
+  /// How long the node took the last time; nothing for its first answer, which is whole.
   std::chrono::steady_clock::duration asking() const { return asking_; }
 
  private:
-  mapping::MissionView view_;
-  std::string has_;  // digest of view_.map
+  std::string has_;  // digest of what was told last
   std::chrono::steady_clock::duration asking_{};
 };
 

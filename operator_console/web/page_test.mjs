@@ -6,7 +6,7 @@ import { readFileSync } from "node:fs";
 import { chromium } from "playwright-core";
 
 const [url, folder] = process.argv.slice(2);
-const browser = await chromium.launch({ executablePath: "/usr/bin/chromium", args: ["--no-sandbox", "--disable-gpu"] });
+const browser = await chromium.launch({ executablePath: "/usr/bin/chromium", args: ["--no-sandbox", "--disable-gpu", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"] });
 const page = await browser.newPage({ viewport: { width: 1400, height: 860 } });
 const problems = [];
 page.on("pageerror", (error) => problems.push(String(error)));
@@ -76,6 +76,57 @@ try {
     }
     if (layer !== "label") await shot(layer);
   }
+
+  // In 3-D, and flat again at the same place.
+  await page.keyboard.press("Escape"); // the chosen label fades all others
+  const fetched = [];
+  page.on("request", (request) => fetched.push(new URL(request.url()).pathname + new URL(request.url()).search));
+  await page.keyboard.press("d");
+  await page.waitForFunction(() => window.shoal.depth?.drawn > 0);
+  assert.ok(fetched.includes("/view3d.js"), "3-D is fetched when it is wanted");
+  await until(async () => fetched.some((path) => path.includes("cells=all")), "3-D asks for what lies below");
+  await page.waitForTimeout(300);
+  assert.equal(await page.evaluate(() => window.shoal.depth.drawn), await cells(), "3-D has every cell");
+  const boxes = await page.evaluate(() => { // tops are in the legend's colours
+    const { depth } = window.shoal, copy = document.createElement("canvas").getContext("2d", { willReadFrequently: true });
+    copy.canvas.width = depth.canvas.width; copy.canvas.height = depth.canvas.height;
+    depth.frame(depth.canvas.clientWidth, depth.canvas.clientHeight);
+    copy.drawImage(depth.canvas, 0, 0);
+    const pixels = copy.getImageData(0, 0, copy.canvas.width, copy.canvas.height).data, seen = new Set();
+    for (let i = 0; i < pixels.length; i += 4) seen.add(`rgb(${pixels[i]}, ${pixels[i + 1]}, ${pixels[i + 2]})`);
+    return [...document.querySelectorAll("#legend .swatch")].map((s) => getComputedStyle(s).backgroundColor).map((c) => seen.has(c));
+  });
+  assert.ok(boxes[0] && boxes[1], "the largest labels are there in 3-D: " + boxes);
+  const spot = await page.evaluate(() => { // a cell, where it is on the screen, and what the eye meets there
+    const { map, depth } = window.shoal;
+    for (const tile of map.tiles.values()) for (let i = 0; i < 1024; ++i) if (tile.label[i] >= 0) {
+      const cell = map.cellOf(tile, tile, i, i), at = depth.project(cell.x, cell.y, cell.z);
+      if (at && at[0] > 100 && at[0] < 500 && at[1] > 150 && at[1] < map.canvas.clientHeight - 100) return { x: at[0], y: at[1], cell, met: depth.pick(...at) };
+    }
+  });
+  assert.ok(Math.abs(spot.met.x - spot.cell.x) <= 1 && Math.abs(spot.met.y - spot.cell.y) <= 2, "the eye meets that cell: " + JSON.stringify(spot));
+  await page.locator("#map").click({ position: spot });
+  await page.waitForSelector("#inspector .why table");
+  await shot("3d_why");
+  await page.keyboard.press("Escape");
+  const eye = () => page.evaluate(() => { const { azimuth, elevation, distance } = window.shoal.depth; return { azimuth, elevation, distance }; });
+  const before3d = await eye();
+  await page.mouse.move(300, 500); await page.mouse.down(); await page.mouse.move(400, 450, { steps: 5 }); await page.mouse.up();
+  await page.mouse.wheel(0, -300);
+  const after3d = await eye();
+  assert.ok(after3d.azimuth !== before3d.azimuth && after3d.elevation !== before3d.elevation && after3d.distance < before3d.distance, "hands turn and zoom");
+  await page.waitForTimeout(300);
+  await shot("3d");
+  const spatial = await (await browser.newContext()).newPage();
+  await spatial.goto(page.url());
+  await spatial.waitForFunction(() => window.shoal.depth?.drawn > 0);
+  const told = await spatial.evaluate(() => window.shoal.depth.azimuth);
+  assert.ok(Math.abs(told - after3d.azimuth) < 0.1, `the link tells where the eye was: ${told}, ${after3d.azimuth}`);
+  await spatial.close();
+  await page.keyboard.press("d");
+  assert.ok(await page.locator("#depth").isHidden(), "flat again");
+  await page.keyboard.press("0");
+  await page.locator("#map").click({ position: await mapped() });
 
   // Files for other programs; on Earth only when it is said where.
   await page.keyboard.press("e");

@@ -31,6 +31,18 @@ void expectEqual(const FusedMap& fused, const GlobalMap& plain) {
   ASSERT_EQ(fused.stateDigest(), plain.state_digest);
   ASSERT_EQ(fused.digest(), plain.digest());
   ASSERT_EQ(fused.numCells(), std::ssize(plain.cells));
+  std::map<BrickColumn, uint64_t> hashes;
+  for (const GlobalCell& c : plain.cells)
+    hashes[{c.cell.x >> 4, c.cell.y >> 4}] +=
+        cellHash(c.cell, c.robot, c.seen, c.certainty) * labelFactor(c.label);
+  ASSERT_EQ(fused.columnHashes(), hashes);
+  std::set<BrickColumn> some{{7, 7}};  // where nobody was
+  for (const auto& [column, hash] : hashes)
+    if (hash % 2 == 0) some.insert(column);
+  std::vector<GlobalCell> expected;
+  for (const GlobalCell& c : plain.cells)
+    if (some.contains({c.cell.x >> 4, c.cell.y >> 4})) expected.push_back(c);
+  ASSERT_EQ(fused.cellsIn(some), expected);
 }
 
 // A mission of five robots in a place of 3 x 3 x 2 bricks, where whatever may happen happens: bricks grow,

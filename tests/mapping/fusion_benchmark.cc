@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <map>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -21,6 +22,7 @@
 
 #include "plain_fusion.h"
 #include "shoal/mapping/fused_map.h"
+#include "shoal/mapping/map_changes.h"
 #include "shoal/random.h"
 
 namespace {
@@ -250,6 +252,30 @@ void OneMoreBrickFusedMapCellsInARow(benchmark::State& state) {
   }
 }
 BENCHMARK(OneMoreBrickFusedMapCellsInARow)->Unit(benchmark::kMillisecond);
+
+// What a console hears after it: the map as it has changed.
+void OneMoreBrickTold(benchmark::State& state) {
+  BeliefStore store = millionCells();
+  FusedMap fused;
+  MapChanges changes;
+  const auto tell = [&](const std::string& has) {
+    fused.update(store, matching::usualMatcher());
+    const MapInColumns map{1, fused.digest(), fused.labels(), fused.columnHashes(),
+                           [&fused](const auto& columns) { return fused.cellsIn(columns); }};
+    return changes.answer(map, {{"query", "map"}, {"has", has}});
+  };
+  std::string has = tell("").at("digest");
+  int32_t observation = 100'000;
+  size_t bytes = 0;
+  for (auto _ : state) {
+    store.apply(oneBrick(++observation));
+    const auto answer = tell(has);
+    has = answer.at("digest");
+    bytes = answer.dump().size();
+  }
+  state.counters["bytes"] = static_cast<double>(bytes);
+}
+BENCHMARK(OneMoreBrickTold)->Unit(benchmark::kMillisecond);
 
 void OneMoreBrickPlainly(benchmark::State& state) {
   BeliefStore store = millionCells();

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """How the page keeps up: a made node with a million cells, twelve robots that change it five times a second.
 
-Usage: page_benchmark.py BIN_DIR WEB_DIR [SECONDS]; WEB_DIR as page_bundle.sh makes it. Prints the rows of docs/benchmarks.md. No test:
+Usage: page_benchmark.py BIN_DIR WEB_DIR [SECONDS [SCREENSHOT]]; WEB_DIR as page_bundle.sh makes it. Prints the rows of docs/benchmarks.md. No test:
 it asserts no time.
 """
 import json
@@ -18,7 +18,7 @@ import time
 BIN, WEB = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
 SECONDS = sys.argv[3] if len(sys.argv) > 3 else "20"
 SIDE, ROBOTS, CELL, LABELS = 1000, 12, 0.25, 24
-BLOCK = 64
+BLOCK = 16
 FOOTPRINT = 16, 12  # cells that a robot sees at once
 
 
@@ -29,12 +29,14 @@ class MadeNode(threading.Thread):
         super().__init__(daemon=True)
         self.started, self.version, self.changed = time.monotonic(), 0, {}  # blocks by the version in which they changed
         self.cells = [[self.line(i, j, i // 90 * 7 + j // 70, 0, 1.0) for i in range(SIDE)] for j in range(SIDE)]
-        self.rows = ["\\n".join(row) for row in self.cells]
         self.socket = socket.socket(socket.AF_UNIX)
         self.socket.bind(os.path.join(folder, "node.sock"))
         self.socket.listen(16)
         self.labels = "label,name,cells,area_m2,robots,first_seen_s\\n" + "".join(
             f"{n * 10000},,{SIDE * SIDE // LABELS},1.000,R00;R01,0.000\\n" for n in range(LABELS))
+        self.rows_of_labels = json.dumps([{"label": n * 10000, "name": "", "cells": SIDE * SIDE // LABELS, "area_m2": 1.0,
+                                           "robots": ["R00", "R01"], "first_seen_s": 0.0, "last_seen_s": 0.0, "certainty": 0.5}
+                                          for n in range(LABELS)])
 
     @staticmethod
     def line(i, j, mixed, robot, seen):
@@ -49,16 +51,12 @@ class MadeNode(threading.Thread):
         tick = int((time.monotonic() - self.started) * 5)
         while self.version < tick:
             self.version += 1
-            changed = set()
             for robot in range(ROBOTS):
                 x, y = self.place(robot, self.version)
                 for j in range(y, y + FOOTPRINT[1]):
                     for i in range(x, x + FOOTPRINT[0]):
                         self.cells[j][i] = self.line(i, j, i * 31 // 40 + j // 9 + self.version // 40, robot, self.version / 5)
                         self.changed[i // BLOCK, j // BLOCK] = self.version
-                    changed.add(j)
-            for j in changed:
-                self.rows[j] = "\\n".join(self.cells[j])
 
     def status(self):
         nodes = []
@@ -72,15 +70,17 @@ class MadeNode(threading.Thread):
                 "digest": {"state": f"{self.version:016x}", "map": f"{self.version:016x}"}, "nodes": nodes}
 
     def map(self, has):
-        """As fusion_node: whole, or the blocks of 64 x 64 columns that changed since."""
-        changes, cells = "", "\\n".join(self.rows)
-        if has:
-            blocks = [block for block, version in self.changed.items() if version > int(has, 16)]
-            changes = f'"since": "{has}", "blocks": {json.dumps(blocks)}, '
-            cells = "\\n".join("\\n".join(self.cells[j][x * BLOCK:(x + 1) * BLOCK]) for x, y in blocks
-                              for j in range(y * BLOCK, min(SIDE, (y + 1) * BLOCK)))
-        return (f'{{"cell_size_m": {CELL}, "digest": "{self.version:016x}", {changes}"labels_csv": "{self.labels}", '
-                f'"global_map_csv": "x_m,y_m,z_m,label,robot,seen_s,certainty\\n{cells}\\n"}}\n')
+        """As fusion_node: whole, or the squares of 16 x 16 columns that changed since."""
+        changes, cells = "", ""
+        if not has:
+            cells = "".join("\\n".join(row) + "\\n" for row in self.cells)
+        else:
+            columns = [column for column, version in self.changed.items() if version > int(has, 16)]
+            changes = f'"since": "{has}", "columns": {json.dumps(columns)}, '
+            cells = "".join("\\n".join(self.cells[j][x * BLOCK:(x + 1) * BLOCK]) + "\\n" for x, y in columns
+                            for j in range(y * BLOCK, min(SIDE, (y + 1) * BLOCK)))
+        return (f'{{"cell_size_m": {CELL}, "digest": "{self.version:016x}", {changes}"labels_csv": "{self.labels}", "labels": {self.rows_of_labels}, '
+                f'"global_map_csv": "x_m,y_m,z_m,label,robot,seen_s,certainty\\n{cells}"}}\n')
 
     def run(self):
         while True:
@@ -103,7 +103,7 @@ def main():
                                   stdout=subprocess.PIPE)
         try:
             url = json.loads(server.stdout.readline())["url"]
-            subprocess.run(["node", "page_benchmark.mjs", url, SECONDS], cwd=WEB, check=True, timeout=300)
+            subprocess.run(["node", "page_benchmark.mjs", url, SECONDS, *sys.argv[4:]], cwd=WEB, check=True, timeout=300)
             with open(f"/proc/{server.pid}/status", encoding="utf-8") as file:
                 peak = next(int(line.split()[1]) for line in file if line.startswith("VmHWM"))
             with open(f"/proc/{server.pid}/stat", encoding="utf-8") as file:

@@ -26,7 +26,7 @@ import jsonschema
 
 BIN, DOCS = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
 CONSOLE = os.path.join(BIN, "operator_console")
-TILE = 8 + 1024 * 13
+TILE, LOWER = 16 + 1024 * 13, 16
 
 
 def schema(name):
@@ -88,18 +88,22 @@ class Server:
 
 
 def tiles(content):
-    """What /api/map says as {(x, y): (label, robot)}, and the header."""
+    """What /api/map says as {(x, y): (label, robot)} from above, and the header."""
     magic, count, cell_size, base, sequence, since, life = struct.unpack_from("<4sIddQQQ", content)
-    assert magic == b"SHT1" and len(content) == 48 + count * TILE, (magic, count, len(content))
-    cells = {}
-    for at in range(48, len(content), TILE):
-        x, y = struct.unpack_from("<ii", content, at)
-        label = struct.unpack_from("<1024i", content, at + 8)
-        robot = struct.unpack_from("<1024h", content, at + 8 + 8192)
+    assert magic == b"SHT2", magic
+    cells, at, num_lower = {}, 48, 0
+    for _ in range(count):
+        x, y, lower, zero = struct.unpack_from("<iiII", content, at)
+        assert zero == 0
+        label = struct.unpack_from("<1024i", content, at + 16)
+        robot = struct.unpack_from("<1024h", content, at + 16 + 8192)
         for i in range(1024):
             if label[i] >= 0:
                 cells[32 * x + i % 32, 32 * y + i // 32] = label[i], robot[i]
-    return cells, {"cell_size": cell_size, "sequence": sequence, "since": since, "life": life, "count": count}
+        at += TILE + lower * LOWER
+        num_lower += lower
+    assert at == len(content), (at, len(content))
+    return cells, {"cell_size": cell_size, "sequence": sequence, "since": since, "life": life, "count": count, "lower": num_lower}
 
 
 class Serve(unittest.TestCase):

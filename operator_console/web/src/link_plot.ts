@@ -21,7 +21,7 @@ export function drawLink(canvas: HTMLCanvasElement, traffic: Traffic, only: stri
   const budget = nodes.every((n) => n.budget > 0) ? nodes.reduce((s, n) => s + n.budget, 0) : 0;
   const peak = Math.max(...[...sums.values()].map((s) => s.reduce((a, b) => a + b, 0)), 1);
   const top = budget > 0 && budget < 3 * peak ? Math.max(peak, budget * 1.08) : peak * 1.05;
-  const left = 46, bottom = height - 16, plot = bottom - 8;
+  const left = 54, bottom = height - 16, plot = bottom - 8;
   const first = times[0], last = Math.max(times[times.length - 1] + traffic.bin_s, first + traffic.bin_s);
   const x = (t: number): number => left + ((t - first) / (last - first)) * (width - left - 4);
   for (const t of times) {

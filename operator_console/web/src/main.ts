@@ -5,9 +5,10 @@ import { classColor, rampCss, robotColor } from "./colors";
 import { area, byId, el, seconds } from "./dom";
 import { openExports } from "./exports";
 import { drawLink, rateText } from "./link_plot";
-import { isSilent, LAYERS, MapView, type Layer } from "./map_view";
+import { isSilent, LAYERS, MapView, type Cell, type Layer } from "./map_view";
 import { Pictures } from "./pictures";
 import { decodeTiles } from "./tiles";
+import type { View3D } from "./view3d";
 
 takeToken();
 const map = new MapView(byId<HTMLCanvasElement>("map"));
@@ -20,6 +21,10 @@ let fitted = false, playing = 0,
     showRare = false;
 let classes: TruthClass[] = [], truthOf = ""; // what the truth was fetched for
 const pictures = new Pictures();
+const updates: { at: number; bytes: number; fetchMs: number }[] = []; // the last ones, for measuring
+const HINT = byId("readout").textContent!;
+let depth: View3D | null = null, // the view in 3-D, while it is shown
+    hasLower = false; // the map was asked for with the cells that lie below others
 const LAYER_TEXT: Record<Layer, string> = { label: "Label", certainty: "Certainty", age: "Age", robot: "Robot", coverage: "Coverage", truth: "Truth" };
 
 const nameOf = (label: number): string => labels.find((l) => l.label === label)?.name || String(label);
@@ -28,40 +33,65 @@ const mayWrite = (): boolean => mission !== null && !mission.read_only && hasTok
 
 // ---------- what is fetched
 
-let fetching = false, again = false;
-async function refresh(): Promise<void> {
-  if (fetching) { again = true; return; }
+// Cells and robots are asked for with every piece of news; the rest, which is for reading, once a second.
+const READ_MS = 1000;
+type What = "map" | "all";
+let fetching = false, again: What | null = null, nextAll = 0, allLater = 0;
+async function refresh(what: What = "all"): Promise<void> {
+  if (fetching) { again = again === "all" ? "all" : what; return; }
   fetching = true;
+  if (past !== null || !mission || performance.now() >= nextAll) what = "all";
   try {
-    mission = await ask<Mission>("/api/mission");
+    if (what === "all") {
+      clearTimeout(allLater); allLater = 0;
+      nextAll = performance.now() + READ_MS;
+      mission = await ask<Mission>("/api/mission");
+    } else if (!allLater) allLater = window.setTimeout(() => { allLater = 0; void refresh(); }, Math.max(0, nextAll - performance.now()));
     const at = past === null ? "" : `?at=${past}`;
-    if (mission.sequence > 0) {
-      const since = past === null && map.life === mission.life && !map.isEmpty ? `?since=${map.sequence}&life=${map.life}` : "";
-      const begun = performance.now();
-      const [bytes, newStatus, newLabels, tracks, newTraffic, happened] = await Promise.all([
-        askBytes("/api/map" + (past === null ? since : at)), ask<Status>("/api/status" + at), ask<{ labels: Label[] }>("/api/labels" + at),
-        ask<{ tracks: Track[] }>("/api/tracks"), ask<Traffic>("/api/traffic"), ask<{ events: Happening[] }>("/api/events")]);
-      status = newStatus; traffic = newTraffic; events = happened.events;
-      labels = newLabels.labels.sort((a, b) => b.area_m2 - a.area_m2);
-      map.nodes = status.nodes; map.tracks = tracks.tracks; map.tracksUntil = past ?? Infinity;
-      map.setLabels(labels);
-      map.take(decodeTiles(bytes));
-      (window as unknown as Record<string, unknown>).shoal = { map, bytes: bytes.byteLength, fetchMs: performance.now() - begun };
-      const pictured = past !== null ? at : `${mission.life} ${mission.pictures}`;
-      if (pictures.of !== pictured) pictures.take(pictured, (await ask<{ labels: { label: number; pictures: Picture[] }[] }>("/api/pictures" + at)).labels, at.replace("?", "&"));
+    if (mission!.sequence > 0) {
+      const begun = performance.now(), withLower = depth !== null;
+      const [bytes, newStatus] = await Promise.all([askMap(at), ask<Status>("/api/status" + at), what === "all" ? askToRead(at) : null]);
+      status = newStatus;
+      map.nodes = status.nodes; map.tracksUntil = past ?? Infinity;
+      if (bytes) { map.take(decodeTiles(bytes)); hasLower = withLower; } else map.draw();
+      updates.push({ at: performance.now(), bytes: bytes?.byteLength ?? 0, fetchMs: performance.now() - begun });
+      if (updates.length > 1000) updates.splice(0, 500);
       if (map.layer === "truth") void fetchTruth();
       if (past !== null) map.sequence = 0, map.life = ""; // the next newest map comes whole
       if (!fitted && !map.isEmpty) { fitted = true; followed = !restoreView(); }
-      if (followed && !map.isEmpty) map.fit();
+      if (followed && !map.isEmpty) fitAll();
     }
-    show();
+    if (what === "all") show(); else { showCounts(); showTime(); }
   } catch (problem) {
     byId("phase").textContent = "no answer"; byId("phase").className = "bad";
     byId("phase").title = String(problem);
   } finally {
     fetching = false;
-    if (again) { again = false; void refresh(); }
+    const next = again;
+    again = null;
+    if (next) void refresh(next);
   }
+}
+
+// Null: the page has it already.
+async function askMap(at: string): Promise<ArrayBuffer | null> {
+  const cells = depth ? "cells=all" : "",
+        knows = past === null && map.life === mission!.life && map.sequence > 0 && hasLower === (depth !== null);
+  if (knows && map.sequence === mission!.sequence) return null;
+  const since = knows ? `since=${map.sequence}&life=${map.life}` : "";
+  const query = [at.slice(1), since, cells].filter((part) => part !== "").join("&");
+  return askBytes("/api/map" + (query === "" ? "" : "?" + query));
+}
+
+async function askToRead(at: string): Promise<void> {
+  const [newLabels, tracks, newTraffic, happened] = await Promise.all([ask<{ labels: Label[] }>("/api/labels" + at),
+    ask<{ tracks: Track[] }>("/api/tracks"), ask<Traffic>("/api/traffic"), ask<{ events: Happening[] }>("/api/events")]);
+  traffic = newTraffic; events = happened.events;
+  labels = newLabels.labels.sort((a, b) => b.area_m2 - a.area_m2);
+  map.tracks = tracks.tracks;
+  map.setLabels(labels);
+  const pictured = past !== null ? at : `${mission!.life} ${mission!.pictures}`;
+  if (pictures.of !== pictured) pictures.take(pictured, (await ask<{ labels: { label: number; pictures: Picture[] }[] }>("/api/pictures" + at)).labels, at.replace("?", "&"));
 }
 
 // The truth is worked out when it is first asked for, which may take a while.
@@ -86,8 +116,10 @@ function listen(): void {
   const stream = new EventSource("/api/stream");
   stream.onmessage = (message) => {
     const news = JSON.parse(message.data);
-    if (past !== null && mission && news.life === mission.life && news.phase === mission.phase) return;
-    void refresh();
+    const isNews = !mission || news.life !== mission.life || news.phase !== mission.phase;
+    if (past !== null && !isNews) return;
+    if (mission && !isNews) Object.assign(mission, { sequence: news.sequence, pictures: news.pictures, time_s: news.time_s });
+    void refresh(isNews ? "all" : "map");
   };
   stream.onerror = () => {
     byId("phase").textContent = "server gone, trying again"; byId("phase").className = "bad";
@@ -106,11 +138,15 @@ function show(): void {
   phase.className = mission.phase === "lost" ? "bad" : past !== null ? "past" : mission.phase === "live" ? "good" : "";
   byId("mission").textContent = status ? `mission ${status.mission_id}` : "";
   byId("mission").title = `${mission.place} · console ${mission.version}`;
-  byId("counts").textContent = status ? `${status.cells.toLocaleString("en")} cells · ${labels.length} labels · ${area(labels.reduce((s, l) => s + l.area_m2, 0))}` : "";
+  showCounts();
   byId("empty").hidden = !map.isEmpty;
   byId("undo").hidden = !mayWrite();
   document.querySelector<HTMLElement>("#layers [data-layer=truth]")!.hidden = !mission.truth;
   showLegend(); showRobots(); showLink(); showEvents(); showTime(); showRamp();
+}
+
+function showCounts(): void {
+  byId("counts").textContent = status ? `${status.cells.toLocaleString("en")} cells · ${labels.length} labels · ${area(labels.reduce((s, l) => s + l.area_m2, 0))}` : "";
 }
 
 function showLegend(): void {
@@ -173,6 +209,7 @@ function showTime(): void {
   const some = times.length > 1;
   slider.disabled = !some; byId<HTMLButtonElement>("play").disabled = !some;
   slider.min = String(times[0] ?? 0); slider.max = String(times[times.length - 1] ?? 1);
+  if (past === null && mission!.time_s > Number(slider.max)) slider.max = String(mission!.time_s);
   if (document.activeElement !== slider || past === null) slider.value = String(past ?? slider.max);
   byId("clock").textContent = some ? `${seconds(past ?? mission!.time_s)} of ${seconds(mission!.time_s)}` : mission!.phase === "whole" ? "no recording: only the end is known" : seconds(mission!.time_s);
   byId("now").hidden = past === null;
@@ -211,6 +248,7 @@ async function decided(edit: Record<string, string>): Promise<void> {
   try {
     toast((await decide(edit)).says, edit.edit !== "undo");
     await refresh();
+    if (edit.edit === "undo" && map.selected !== null) void inspect(map.selected);
   } catch (problem) { toast((problem as Error).message); }
 }
 const takeBack = (): Promise<void> => decided({ edit: "undo" });
@@ -270,16 +308,15 @@ function whyTable(w: Why): HTMLElement {
     el("p", { class: "dim" }, `Matched by ${w.matcher}, ${w.similarity}.${w.matcher === "shoal" ? " Groups are joined by the mean of all pairs, so single things outside may be more alike than the ones inside." : ""}`));
 }
 
-async function inspectCell(x: number, y: number): Promise<void> {
-  const cell = map.cellAt(x, y);
+async function inspectCell(cell: Cell | null): Promise<void> {
   if (!cell) return choose(null);
   if (linking !== null) return choose(cell.label);
   map.selected = cell.label; map.repaint(); show(); remember();
-  const list = el("div", { class: "cell" }, el("code", {}, `${cell.x.toFixed(2)} ${cell.y.toFixed(2)}`), " m: ", `R${String(cell.robot).padStart(2, "0")} saw it last at ${seconds(cell.seen)}, ${(100 * cell.certainty).toFixed(0)} % sure`);
+  const list = el("div", { class: "cell" }, el("code", {}, `${cell.x.toFixed(2)} ${cell.y.toFixed(2)}`), depth ? ` m, ${cell.z.toFixed(2)} m high: ` : " m: ", `R${String(cell.robot).padStart(2, "0")} saw it last at ${seconds(cell.seen)}, ${(100 * cell.certainty).toFixed(0)} % sure`);
   void inspect(cell.label, list);
   try {
     const answer = await ask<CellHistory>(`/api/at?x=${cell.x}&y=${cell.y}`);
-    const history = answer.cells[answer.cells.length - 1]?.history ?? [];
+    const history = answer.cells.reduce((best, c) => Math.abs(c.z_m - cell.z) < Math.abs(best.z_m - cell.z) ? c : best).history; // empty: reduce throws
     if (history.length > 1) list.append(el("ul", {}, ...history.map((h) => el("li", {}, `${h.robot} at ${seconds(h.seen_s)}: ${nameOf(h.label)}`))));
   } catch { /* the cell's own line stands */ }
 }
@@ -320,10 +357,46 @@ function play(): void {
   playing = window.setInterval(() => { step(1); if (past === null) stop(); }, 600);
 }
 
+// ---------- in 3-D
+
+let view3d: Promise<View3D> | null = null;
+function openDepth(): Promise<View3D> {
+  const file = "/view3d.js"; // fetched when it is first wanted
+  return (view3d ??= (import(file) as Promise<typeof import("./view3d")>).then((module) => new module.View3D(byId<HTMLCanvasElement>("depth"), map)));
+}
+async function setDepth(on: boolean, camera: number[] | null = null): Promise<void> {
+  if (on === (depth !== null)) return;
+  if (on) {
+    try { depth = await openDepth(); } catch { view3d = null; return toast("This browser cannot draw in 3-D."); }
+    map.depth = depth;
+    for (const key of map.tiles.keys()) depth.soil(key);
+    depth.look(map.center, map.scale);
+    if (camera) [depth.azimuth, depth.elevation, depth.distance, depth.target.z] = camera;
+    if (followed) fitAll();
+    if (!hasLower) map.sequence = 0; // with what lies below
+  } else {
+    map.center = { x: depth!.target.x, y: depth!.target.y }; map.scale = Math.max(0.02, Math.min(400, depth!.scale()));
+    map.depth = depth = null;
+    if (followed) fitAll();
+  }
+  byId("depth").hidden = !on;
+  byId("threed").setAttribute("aria-pressed", String(on));
+  byId("map").classList.toggle("turns", on);
+  byId("readout").textContent = on ? "Click: what is here, and why · drag: turn · right or Shift and drag: move · wheel: zoom" : HINT;
+  map.repaint(); remember(); void refresh();
+}
+const fitAll = (): void => { if (depth) { depth.fit(map.covered); map.draw(); } else map.fit(); };
+const panBy = (px: number, py: number): void => { if (depth) { depth.pan(px, py); map.draw(); } else map.pan(px, py); };
+const zoomBy = (factor: number, px?: number, py?: number): void => { if (depth) { depth.zoom(factor); map.draw(); } else map.zoom(factor, px, py); };
+const orbitBy = (px: number, py: number): void => { depth?.orbit(px, py); map.draw(); };
+const cellUnder = (px: number, py: number): Cell | null => depth ? depth.pick(px, py) : map.cellAt(...map.toWorld(px, py));
+
 // ---------- a link to any view
 
 function remember(): void {
-  const hash = new URLSearchParams({ x: map.center.x.toFixed(2), y: map.center.y.toFixed(2), zoom: map.scale.toPrecision(4), layer: map.layer });
+  const center = depth ? depth.target : map.center;
+  const hash = new URLSearchParams({ x: center.x.toFixed(2), y: center.y.toFixed(2), zoom: (depth ? depth.scale() : map.scale).toPrecision(4), layer: map.layer });
+  if (depth) hash.set("camera", [depth.azimuth.toFixed(1), depth.elevation.toFixed(1), depth.distance.toPrecision(5), depth.target.z.toFixed(2)].join(" "));
   if (past !== null) hash.set("t", past.toFixed(3));
   if (map.selected !== null) hash.set("label", String(map.selected));
   if (map.onlyRobot !== null) hash.set("robot", String(map.onlyRobot));
@@ -341,29 +414,36 @@ function restoreView(): boolean {
   if (map.selected !== null || map.onlyRobot !== null) map.repaint();
   if (x === null || y === null || zoom === null || zoom <= 0) return false;
   map.center = { x, y }; map.scale = Math.max(0.02, Math.min(400, zoom)); map.draw();
+  const camera = (hash.get("camera") ?? "").split(" ").map(Number);
+  if (camera.length === 4 && camera.every(Number.isFinite) && camera[2] > 0) { followed = false; void setDepth(true, camera); }
   return true;
 }
 
 // ---------- hands
 
-const KEYS: [string, string][] = [["click", "what is here, and why"], ["drag, wheel", "move, zoom"], ["arrows + − 0", "move, zoom, see everything"], ["1 … 6", "label, certainty, age, robot, coverage, truth (when it is known)"],
+const KEYS: [string, string][] = [["click", "what is here, and why"], ["drag, wheel", "move, zoom"], ["arrows + − 0", "move, zoom, see everything"], ["d", "in 3-D: drag or Shift and arrows turn, Shift and drag moves"], ["1 … 6", "label, certainty, age, robot, coverage, truth (when it is known)"],
   ["[ ] space", "earlier, later, play"], ["n", "name the chosen label"], ["u", "undo"], ["e", "export"], ["Esc", "choose nothing"]];
 
 function hands(): void {
   const canvas = map.canvas;
-  let from: [number, number] | null = null, moved = false;
-  canvas.addEventListener("pointerdown", (e) => { from = [e.clientX, e.clientY]; moved = false; canvas.setPointerCapture(e.pointerId); });
+  let from: [number, number] | null = null, moved = false, turns = false;
+  canvas.addEventListener("contextmenu", (e) => { if (depth) e.preventDefault(); });
+  canvas.addEventListener("pointerdown", (e) => { from = [e.clientX, e.clientY]; moved = false; turns = depth !== null && e.button === 0 && !e.shiftKey; canvas.setPointerCapture(e.pointerId); });
   canvas.addEventListener("pointermove", (e) => {
     if (from) {
-      if (Math.abs(e.clientX - from[0]) + Math.abs(e.clientY - from[1]) > 3 || moved) { moved = true; followed = false; map.pan(e.clientX - from[0], e.clientY - from[1]); from = [e.clientX, e.clientY]; }
+      if (Math.abs(e.clientX - from[0]) + Math.abs(e.clientY - from[1]) > 3 || moved) { moved = true; followed = false; (turns ? orbitBy : panBy)(e.clientX - from[0], e.clientY - from[1]); from = [e.clientX, e.clientY]; }
+      if (depth) return;
     }
-    const [x, y] = map.toWorld(e.offsetX, e.offsetY), cell = map.cellAt(x, y);
-    byId("readout").textContent = `${x.toFixed(1)}, ${y.toFixed(1)} m` + (cell ? ` · ${nameOf(cell.label)} · R${String(cell.robot).padStart(2, "0")} at ${seconds(cell.seen)} · ${(100 * cell.certainty).toFixed(0)} % sure` + (map.layer === "truth" && cell.truth !== null ? ` · truly ${classes.find((c) => c.id === cell.truth)?.name ?? cell.truth}` : "") : "");
+    const cell = cellUnder(e.offsetX, e.offsetY);
+    if (depth && !cell) return;
+    const [x, y] = depth ? [cell!.x, cell!.y] : map.toWorld(e.offsetX, e.offsetY);
+    byId("readout").textContent = `${x.toFixed(1)}, ${y.toFixed(1)}${depth ? `, ${cell!.z.toFixed(1)}` : ""} m` + (cell ? ` · ${nameOf(cell.label)} · R${String(cell.robot).padStart(2, "0")} at ${seconds(cell.seen)} · ${(100 * cell.certainty).toFixed(0)} % sure` + (map.layer === "truth" && cell.truth !== null ? ` · truly ${classes.find((c) => c.id === cell.truth)?.name ?? cell.truth}` : "") : "");
   });
-  canvas.addEventListener("pointerup", (e) => { if (from && !moved) void inspectCell(...map.toWorld(e.offsetX, e.offsetY)); else remember(); from = null; });
-  canvas.addEventListener("wheel", (e) => { e.preventDefault(); followed = false; map.zoom(Math.exp(-e.deltaY * 0.0015), e.offsetX, e.offsetY); remember(); }, { passive: false });
+  canvas.addEventListener("pointerup", (e) => { if (from && !moved && e.button === 0) void inspectCell(cellUnder(e.offsetX, e.offsetY)); else remember(); from = null; });
+  canvas.addEventListener("wheel", (e) => { e.preventDefault(); followed = false; zoomBy(Math.exp(-e.deltaY * 0.0015), e.offsetX, e.offsetY); remember(); }, { passive: false });
   for (const layer of LAYERS) byId("layers").append(el("button", { role: "radio", "data-layer": layer, "aria-checked": String(layer === map.layer), click: () => setLayer(layer) }, LAYER_TEXT[layer]));
-  byId("fit").addEventListener("click", () => { followed = true; map.fit(); remember(); });
+  byId("threed").addEventListener("click", () => void setDepth(depth === null));
+  byId("fit").addEventListener("click", () => { followed = true; fitAll(); remember(); });
   byId<HTMLInputElement>("tracks").addEventListener("change", (e) => { map.showTracks = (e.target as HTMLInputElement).checked; map.draw(); });
   byId<HTMLInputElement>("names").addEventListener("change", (e) => { map.showRobots = (e.target as HTMLInputElement).checked; map.draw(); });
   byId("undo").addEventListener("click", () => void takeBack());
@@ -378,9 +458,10 @@ function hands(): void {
   addEventListener("resize", () => { map.draw(); showLink(); });
   addEventListener("keydown", (e) => {
     if (e.ctrlKey || e.metaKey || e.altKey || (e.target as HTMLElement).matches("input:not([type=range]):not([type=checkbox]), select")) return;
+    const arrow = depth && e.shiftKey ? orbitBy : panBy;
     const act: Record<string, () => void> = {
-      ArrowLeft: () => map.pan(60, 0), ArrowRight: () => map.pan(-60, 0), ArrowUp: () => map.pan(0, 60), ArrowDown: () => map.pan(0, -60),
-      "+": () => map.zoom(1.3), "=": () => map.zoom(1.3), "-": () => map.zoom(1 / 1.3), "0": () => map.fit(), "[": () => step(-1), "]": () => step(1), " ": play,
+      ArrowLeft: () => arrow(60, 0), ArrowRight: () => arrow(-60, 0), ArrowUp: () => arrow(0, 60), ArrowDown: () => arrow(0, -60),
+      "+": () => zoomBy(1.3), "=": () => zoomBy(1.3), "-": () => zoomBy(1 / 1.3), "0": fitAll, d: () => void setDepth(depth === null), "[": () => step(-1), "]": () => step(1), " ": play,
       n: () => { if (map.selected !== null) nameLabel(map.selected); }, u: () => { if (mayWrite()) void takeBack(); }, "?": () => keys.showModal(), e: () => { if (mission) openExports(mission); },
       Escape: () => { linking = null; byId("map").classList.remove("linking"); map.onlyRobot = null; choose(null); },
     };
@@ -396,6 +477,7 @@ function hands(): void {
   });
 }
 
+(window as unknown as Record<string, unknown>).shoal = { map, updates, get depth() { return depth; } };
 hands();
 listen();
 void refresh();

@@ -2,14 +2,23 @@
 // The map on a canvas: squares of 256 x 256 columns kept as pictures, redrawn only where cells changed.
 import { faded, parse, ramp, rgba, robotColor } from "./colors";
 import type { Label, Node, Track, TruthClass } from "./api";
-import { SIDE, type Tile, type TileSet } from "./tiles";
+import { SIDE, type Cells, type Tile, type TileSet } from "./tiles";
 
 export type Layer = "label" | "certainty" | "age" | "robot" | "coverage" | "truth";
 export const LAYERS: Layer[] = ["label", "certainty", "age", "robot", "coverage", "truth"];
-export interface Cell { x: number; y: number; label: number; seen: number; robot: number; certainty: number; truth: number | null }
+export interface Cell { x: number; y: number; z: number; label: number; seen: number; robot: number; certainty: number; truth: number | null }
 
 const CHUNK = 8; // tiles along the edge of a picture
 const SILENT_S = 5;
+
+// Another way to show the same cells, under this canvas.
+export interface DepthView {
+  forget(): void; // every cell is gone
+  soil(tile: string): void; // its cells or their colours have changed
+  frame(width: number, height: number): void;
+  project(x: number, y: number, z: number): [number, number] | null; // metres to pixels; null: out of sight
+  drawFrame(c: CanvasRenderingContext2D, width: number, height: number): void; // what lies over the robots
+}
 
 interface Chunk { canvas: HTMLCanvasElement; context: CanvasRenderingContext2D; x: number; y: number; tiles: Set<string> }
 
@@ -21,13 +30,15 @@ export class MapView {
   tracks: Track[] = []; nodes: Node[] = [];
   lastFrameMs = 0;
   covered = 0; // pixels at the right that something lies over
-  private tiles = new Map<string, Tile>();
+  depth: DepthView | null = null; // shown instead of the flat map
+  readonly tiles = new Map<string, Tile>();
   private truth = new Map<string, Tile>(); // with classes as labels
   private truthColors = new Map<number, number>();
   private chunks = new Map<string, Chunk>();
   private dirty = new Set<string>();
   private colors = new Map<number, number>();
   private oldest = 0; private newest = 1;
+  private painted = [0, 1]; // the oldest and newest that colours of ages were chosen for
   private asked = false;
 
   constructor(readonly canvas: HTMLCanvasElement) {}
@@ -36,21 +47,26 @@ export class MapView {
 
   take(set: TileSet): void {
     this.cellSize = set.cellSize; this.base = set.base; this.sequence = set.sequence; this.life = set.life;
-    if (set.since === 0) { this.tiles.clear(); this.chunks.clear(); this.dirty.clear(); }
+    if (set.since === 0) { this.tiles.clear(); this.chunks.clear(); this.dirty.clear(); this.depth?.forget(); }
     for (const tile of set.tiles) {
       const key = tile.x + "," + tile.y;
       this.tiles.set(key, tile);
-      this.dirty.add(key);
+      this.soil(key);
     }
-    const span = [this.oldest, this.newest].join();
     this.oldest = Infinity; this.newest = -Infinity;
-    for (const tile of this.tiles.values()) for (let i = 0; i < tile.label.length; ++i) if (tile.label[i] >= 0) {
-      if (tile.seen[i] < this.oldest) this.oldest = tile.seen[i];
-      if (tile.seen[i] > this.newest) this.newest = tile.seen[i];
+    for (const tile of this.tiles.values()) {
+      if (tile.oldest < this.oldest) this.oldest = tile.oldest;
+      if (tile.newest > this.newest) this.newest = tile.newest;
     }
-    if (this.layer === "age" && span !== [this.oldest, this.newest].join()) this.repaint();
+    const step = (this.painted[1] - this.painted[0]) / 64; // less is not to be seen
+    if (!(Math.abs(this.newest - this.painted[1]) <= step && Math.abs(this.oldest - this.painted[0]) <= step)) {
+      this.painted = [this.oldest, this.newest];
+      if (this.layer === "age") this.repaint();
+    }
     this.draw();
   }
+
+  private soil(key: string): void { this.dirty.add(key); this.depth?.soil(key); }
 
   setLabels(labels: Label[]): void {
     const before = this.colors;
@@ -65,32 +81,38 @@ export class MapView {
   }
 
   repaint(): void {
-    for (const key of this.tiles.keys()) this.dirty.add(key);
+    for (const key of this.tiles.keys()) this.soil(key);
     this.draw();
   }
 
   ageRange(): [number, number] { return [0, Math.max(0, (this.newest - this.oldest) / 10)]; }
 
-  private colorer(): (tile: Tile, i: number) => number {
-    const chosen = (tile: Tile, i: number): boolean =>
-      (this.selected === null || tile.label[i] === this.selected) && (this.onlyRobot === null || tile.robot[i] === this.onlyRobot);
-    const span = Math.max(1, this.newest - this.oldest);
+  // The colour of one of a tile's cells; `column` is where its truth stands.
+  colorer(): (cells: Cells, i: number, tile: Tile, column: number) => number {
+    const { selected, onlyRobot, layer, colors, truthColors } = this;
+    const [oldest, newest] = this.painted, span = Math.max(1, newest - oldest);
+    const grey = rgba(150, 150, 150), unknown = rgba(205, 209, 213), covered = rgba(68, 140, 150);
+    const steps = Uint32Array.from({ length: 256 }, (_, i) => ramp(i / 255));
     const robots = new Map<number, number>();
-    const plain = (tile: Tile, i: number): number => {
-      switch (this.layer) {
-        case "label": return this.colors.get(tile.label[i]) ?? rgba(150, 150, 150);
-        case "certainty": return ramp(tile.certainty[i] / 255);
-        case "age": return ramp(1 - (this.newest - tile.seen[i]) / span);
+    const plain = (cells: Cells, i: number, tile: Tile, column: number): number => {
+      switch (layer) {
+        case "label": return colors.get(cells.label[i]) ?? grey;
+        case "certainty": return steps[cells.certainty[i]];
+        case "age": return steps[Math.max(0, Math.min(255, Math.round(255 * (1 - (newest - cells.seen[i]) / span))))];
         case "robot": {
-          let color = robots.get(tile.robot[i]);
-          if (color === undefined) robots.set(tile.robot[i], (color = parse(robotColor(tile.robot[i]))));
+          let color = robots.get(cells.robot[i]);
+          if (color === undefined) robots.set(cells.robot[i], (color = parse(robotColor(cells.robot[i]))));
           return color;
         }
-        case "coverage": return rgba(68, 140, 150);
-        case "truth": return this.truthColors.get(this.truth.get(tile.x + "," + tile.y)?.label[i] ?? -1) ?? rgba(205, 209, 213);
+        case "coverage": return covered;
+        case "truth": return cells !== tile ? unknown : truthColors.get(this.truth.get(tile.x + "," + tile.y)?.label[column] ?? -1) ?? unknown;
       }
     };
-    return (tile, i) => (tile.label[i] < 0 ? 0 : chosen(tile, i) ? plain(tile, i) : faded(plain(tile, i)));
+    return (cells, i, tile, column) => {
+      if (cells.label[i] < 0) return 0;
+      const color = plain(cells, i, tile, column);
+      return (selected === null || cells.label[i] === selected) && (onlyRobot === null || cells.robot[i] === onlyRobot) ? color : faded(color);
+    };
   }
 
   private paint(): void {
@@ -109,7 +131,7 @@ export class MapView {
         this.chunks.set(chunkKey, chunk);
       }
       chunk.tiles.add(key);
-      for (let j = 0; j < SIDE; ++j) for (let i = 0; i < SIDE; ++i) pixels[(SIDE - 1 - j) * SIDE + i] = color(tile, j * SIDE + i);
+      for (let j = 0; j < SIDE; ++j) for (let i = 0; i < SIDE; ++i) pixels[(SIDE - 1 - j) * SIDE + i] = color(tile, j * SIDE + i, tile, j * SIDE + i);
       chunk.context.putImageData(image, (tile.x - cx * CHUNK) * SIDE, (CHUNK - 1 - (tile.y - cy * CHUNK)) * SIDE);
     }
     this.dirty.clear();
@@ -135,9 +157,25 @@ export class MapView {
       this.canvas.width = Math.round(width * ratio);
       this.canvas.height = Math.round(height * ratio);
     }
-    this.paint();
     const c = this.canvas.getContext("2d")!;
     c.setTransform(1, 0, 0, 1, 0, 0);
+    if (this.depth) {
+      c.clearRect(0, 0, this.canvas.width, this.canvas.height);
+      c.setTransform(ratio, 0, 0, ratio, 0, 0);
+      this.depth.frame(width, height);
+      this.drawRobots(c);
+      this.depth.drawFrame(c, width, height);
+    } else {
+      this.drawFlat(c, ratio, width, height);
+      c.setTransform(ratio, 0, 0, ratio, 0, 0);
+      this.drawRobots(c);
+      this.drawScale(c, height);
+    }
+    this.lastFrameMs = performance.now() - begun;
+  }
+
+  private drawFlat(c: CanvasRenderingContext2D, ratio: number, width: number, height: number): void {
+    this.paint();
     c.fillStyle = "#eef0f2";
     c.fillRect(0, 0, this.canvas.width, this.canvas.height);
     const side = CHUNK * SIDE * this.cellSize;
@@ -150,20 +188,21 @@ export class MapView {
       const x = Math.round(left * ratio), y = Math.round(top * ratio);
       c.drawImage(chunk.canvas, x, y, Math.round(right * ratio) - x, Math.round(bottom * ratio) - y);
     }
-    c.setTransform(ratio, 0, 0, ratio, 0, 0);
-    this.drawRobots(c);
-    this.drawScale(c, height);
-    this.lastFrameMs = performance.now() - begun;
   }
 
   private drawRobots(c: CanvasRenderingContext2D): void {
     const newest = Math.max(...this.nodes.map((n) => n.heard_s), 0);
-    const last = new Map<string, [number, number]>();
+    const project = (p: number[]): [number, number] | null => this.depth ? this.depth.project(p[1], p[2], p[3]) : this.toScreen(p[1], p[2]);
+    const last = new Map<string, number[]>();
+    for (const node of this.nodes) if (node.observation >= 0) last.set(node.name, [node.heard_s, ...node.position_m]);
     c.lineJoin = "round";
     for (const track of this.tracks) {
-      const points = track.points.filter((p) => p[0] <= this.tracksUntil);
+      const points: number[][] = track.points.filter((p) => p[0] <= this.tracksUntil);
       if (points.length === 0) continue;
-      last.set(track.robot, [points[points.length - 1][1], points[points.length - 1][2]]);
+      // Status comes more often than tracks; of the past only tracks tell.
+      const end = points[points.length - 1], now = last.get(track.robot);
+      if (now && this.tracksUntil === Infinity && now[0] > end[0]) points.push(now);
+      else last.set(track.robot, end);
       if (!this.showTracks) continue;
       const number = Number(track.robot.slice(1));
       for (const [style, thickness] of [["rgba(255,255,255,.75)", 3.5], [robotColor(number), 1.5]] as const) {
@@ -171,7 +210,12 @@ export class MapView {
         c.lineWidth = thickness;
         c.globalAlpha = this.onlyRobot === null || this.onlyRobot === number ? 0.9 : 0.15;
         c.beginPath();
-        points.forEach((p, i) => { const [x, y] = this.toScreen(p[1], p[2]); if (i === 0) c.moveTo(x, y); else c.lineTo(x, y); });
+        let down = false;
+        for (const p of points) {
+          const at = project(p);
+          if (at && down) c.lineTo(...at); else if (at) c.moveTo(...at);
+          down = at !== null;
+        }
         c.stroke();
       }
       c.globalAlpha = 1;
@@ -181,9 +225,17 @@ export class MapView {
     c.textBaseline = "middle";
     for (const node of this.nodes) {
       if (node.phase === "node" || node.observation < 0) continue;
-      const at = last.get(node.name) ?? [node.position_m[0], node.position_m[1]];
-      const [x, y] = this.toScreen(at[0], at[1]);
+      const where = last.get(node.name)!, at = project(where);
+      if (!at) continue;
+      const [x, y] = at;
       const color = isSilent(node, newest) ? "#8a8f96" : robotColor(Number(node.name.slice(1)));
+      const below = this.depth?.project(where[1], where[2], 0);
+      if (below) { // where over the map it is
+        c.strokeStyle = color; c.lineWidth = 1; c.setLineDash([3, 3]);
+        c.beginPath(); c.moveTo(x, y); c.lineTo(...below); c.stroke();
+        c.setLineDash([]);
+        c.beginPath(); c.arc(...below, 2, 0, 2 * Math.PI); c.fillStyle = color; c.fill();
+      }
       c.beginPath();
       c.arc(x, y, 6, 0, 2 * Math.PI);
       c.fillStyle = node.phase === "flying" ? color : "#fff";
@@ -218,20 +270,29 @@ export class MapView {
     const tx = Math.floor(cx / SIDE), ty = Math.floor(cy / SIDE);
     const tile = this.tiles.get(tx + "," + ty);
     const i = (cy - ty * SIDE) * SIDE + (cx - tx * SIDE);
-    if (!tile || tile.label[i] < 0) return null;
-    const truth = this.truth.get(tx + "," + ty)?.label[i] ?? -1;
-    return { x: cx * this.cellSize, y: cy * this.cellSize, truth: truth < 0 ? null : truth, label: tile.label[i], seen: this.base + tile.seen[i] / 10,
-             robot: tile.robot[i], certainty: tile.certainty[i] / 255 };
+    return tile && tile.label[i] >= 0 ? this.cellOf(tile, tile, i, i) : null;
+  }
+
+  cellOf(tile: Tile, cells: Cells, i: number, column: number): Cell {
+    const truth = cells === tile ? this.truth.get(tile.x + "," + tile.y)?.label[column] ?? -1 : -1;
+    return { x: (tile.x * SIDE + column % SIDE) * this.cellSize, y: (tile.y * SIDE + Math.floor(column / SIDE)) * this.cellSize, z: cells.height[i] * this.cellSize,
+             truth: truth < 0 ? null : truth, label: cells.label[i], seen: this.base + cells.seen[i] / 10, robot: cells.robot[i], certainty: cells.certainty[i] / 255 };
+  }
+
+  // The box around all cells, indices: x, y and z from, x, y and z to; null while there are none.
+  bounds(): [number, number, number, number, number, number] | null {
+    let [x0, y0, z0, x1, y1, z1] = [Infinity, Infinity, Infinity, -Infinity, -Infinity, -Infinity];
+    for (const { x, y, box, span } of this.tiles.values()) if (box) {
+      x0 = Math.min(x0, x * SIDE + box[0]); y0 = Math.min(y0, y * SIDE + box[1]); z0 = Math.min(z0, span[0]);
+      x1 = Math.max(x1, x * SIDE + box[2]); y1 = Math.max(y1, y * SIDE + box[3]); z1 = Math.max(z1, span[1]);
+    }
+    return x0 > x1 ? null : [x0, y0, z0, x1, y1, z1];
   }
 
   fit(): void {
-    let [x0, y0, x1, y1] = [Infinity, Infinity, -Infinity, -Infinity];
-    for (const tile of this.tiles.values()) for (let j = 0; j < SIDE; ++j) for (let i = 0; i < SIDE; ++i) {
-      if (tile.label[j * SIDE + i] < 0) continue;
-      const x = tile.x * SIDE + i, y = tile.y * SIDE + j;
-      x0 = Math.min(x0, x); x1 = Math.max(x1, x); y0 = Math.min(y0, y); y1 = Math.max(y1, y);
-    }
-    if (x0 > x1) return;
+    const bounds = this.bounds();
+    if (!bounds) return;
+    const [x0, y0, , x1, y1] = bounds;
     this.center = { x: ((x0 + x1) / 2) * this.cellSize, y: ((y0 + y1) / 2) * this.cellSize };
     // The bar above the map hides nothing.
     const bar = 52, height = Math.max(50, this.canvas.clientHeight - bar), width = Math.max(50, this.canvas.clientWidth - this.covered);
