@@ -189,15 +189,21 @@ TEST(EditsTest, WithoutARobotIsTheVeryMapOfAMissionWithoutIt) {
   }
 }
 
+// A robot whose certainties lie near the borders between ninths.
+LocalBelief bordering(int r) {
+  LocalBelief belief = robot(r);
+  for (size_t i = 0; i < belief.cells.size(); ++i)
+    belief.cells[i].certainty = (static_cast<float>(i % 9) + 0.5f) / 9.f + (i % 2 == 0 ? 2e-6f : -2e-6f);
+  return belief;
+}
+
 // The files of a run add up to the map that was made from what travelled, certainties included.
 TEST(EditsTest, ThroughTheFilesToo) {
   const std::string folder = testing::TempDir() + "edits" + std::to_string(::getpid());
   const world::Grid grid(0.5);
   BeliefStore from_files;
   for (const int r : {0, 1, 2}) {
-    LocalBelief belief = robot(r);
-    for (size_t i = 0; i < belief.cells.size(); ++i)  // near the borders between ninths
-      belief.cells[i].certainty = (static_cast<float>(i % 9) + 0.5f) / 9.f + (i % 2 == 0 ? 2e-6f : -2e-6f);
+    const LocalBelief belief = bordering(r);
     writeBelief(folder, belief, grid);
     LocalBelief read = readBelief(folder, RobotId{r}, grid);
     for (size_t i = 0; i < belief.cells.size(); ++i) {
@@ -211,10 +217,7 @@ TEST(EditsTest, ThroughTheFilesToo) {
   from_files.apply(pieceOf(exclude("A", 1, 0, 1)));
   BeliefStore without;
   for (const int r : {0, 2}) {
-    LocalBelief belief = robot(r);
-    for (size_t i = 0; i < belief.cells.size(); ++i)
-      belief.cells[i].certainty = (static_cast<float>(i) + 0.5f) / 63.f + (i % 2 == 0 ? 2e-6f : -2e-6f);
-    for (const Piece& piece : wholePieces(belief)) without.apply(piece);
+    for (const Piece& piece : wholePieces(bordering(r))) without.apply(piece);
   }
   const GlobalMap expected = fuse(without, matcher());
   GlobalMap read = parseGlobalMap(globalMapCsv(expected, grid), labelsCsv(expected, grid), grid, "test");
