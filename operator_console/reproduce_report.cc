@@ -49,6 +49,7 @@ std::string published(const std::string& world, const std::string& row) {
 struct Row {
   std::string name;
   eval::Summary newest, concatenated, labels;
+  std::optional<eval::Summary> ari, f1;  // of the topics, where they are matched
 };
 
 eval::Summary over(const WorldResult& world, const std::function<double(const eval::Repeat&)>& value) {
@@ -63,13 +64,19 @@ std::vector<Row> rowsOf(const Reproduction& all, const WorldResult& world) {
     rows.push_back({eval::nameOf(all.matchers[m]),
                     over(world, [m](const auto& r) { return r.newest[m].ami; }),
                     over(world, [m](const auto& r) { return r.concatenated[m].ami; }),
-                    over(world, [m](const auto& r) { return static_cast<double>(r.newest[m].labels); })});
+                    over(world, [m](const auto& r) { return static_cast<double>(r.newest[m].labels); }),
+                    over(world, [m](const auto& r) { return r.matches[m].ari; }),
+                    over(world, [m](const auto& r) { return r.matches[m].f1; })});
   }
   const auto alike = [&](const std::string& name,
                          const std::function<const eval::Score&(const eval::Repeat&)>& of) {
     const eval::Summary ami = over(world, [&](const auto& r) { return of(r).ami; });
-    rows.push_back(
-        {name, ami, ami, over(world, [&](const auto& r) { return static_cast<double>(of(r).labels); })});
+    rows.push_back({name,
+                    ami,
+                    ami,
+                    over(world, [&](const auto& r) { return static_cast<double>(of(r).labels); }),
+                    {},
+                    {}});
   };
   if (all.options.exchange_every > 0) {
     alike("merged models (Doherty 2018)", [](const auto& r) -> const eval::Score& { return r.merged; });
@@ -91,12 +98,13 @@ std::string csvRow(const std::vector<std::string>& cells) {
 std::string f(double value) { return fmt::format("{:.4f}", value); }
 
 std::string tableCsv(const Reproduction& all) {
-  std::string csv = "world,matcher,repeats,ami,deviation,margin95,ami_concatenated,labels,paper\n";
+  std::string csv = "world,matcher,repeats,ami,deviation,margin95,ami_concatenated,labels,ari,f1,paper\n";
   for (const WorldResult& world : all.worlds) {
     for (const Row& row : rowsOf(all, world)) {
       csv += csvRow({world.world, row.name, std::to_string(row.newest.count), f(row.newest.mean),
                      f(row.newest.deviation), f(row.newest.margin), f(row.concatenated.mean),
-                     fmt::format("{:.1f}", row.labels.mean), published(world.world, row.name)});
+                     fmt::format("{:.1f}", row.labels.mean), row.ari ? f(row.ari->mean) : "",
+                     row.f1 ? f(row.f1->mean) : "", published(world.world, row.name)});
     }
   }
   return csv;
@@ -229,13 +237,15 @@ std::string html(const Reproduction& all) {
       "Jamieson, K. Fathian, "
       "K. Khosoussi, J. P. How, Y. Girdhar, ICRA 2021. AMI is adjusted mutual information with the truth, "
       "normalised by the larger "
-      "entropy: 1 is a perfect map, 0 a random one.</p>\n",
+      "entropy: 1 is a perfect map, 0 a random one. ARI and F1 are those of the topics, each taken for the "
+      "class "
+      "of most of its cells, cells left aside.</p>\n",
       o.num_robots, o.observations, o.repeats, xmlText(o.profile), o.seed, version(), commit());
   for (const WorldResult& world : all.worlds) {
     page += fmt::format(
         "<h2>{}</h2>\n<table><tr><th>matching</th><th>AMI, newest</th><th>deviation</th><th>95 "
         "%</th><th>AMI, all"
-        "</th><th>labels</th><th class=\"paper\">paper</th></tr>\n",
+        "</th><th>labels</th><th>topics, ARI</th><th>F1</th><th class=\"paper\">paper</th></tr>\n",
         xmlText(world.world));
     const std::vector<Row> rows = rowsOf(all, world);
     double best = -1;
@@ -243,11 +253,13 @@ std::string html(const Reproduction& all) {
     for (size_t m = 0; m < rows.size(); ++m) {
       const Row& r = rows[m];
       page += fmt::format(
-          "<tr{}><td>{}</td><td>{:.3f}</td><td>{:.3f}</td><td>± {:.3f}</td><td>{:.3f}</td><td>{:.1f}</td><td "
+          "<tr{}><td>{}</td><td>{:.3f}</td><td>{:.3f}</td><td>± "
+          "{:.3f}</td><td>{:.3f}</td><td>{:.1f}</td><td>{}</td><td>{}</td><td "
           "class=\"paper\">"
           "{}</td></tr>\n",
           m < all.matchers.size() && r.newest.mean == best ? " class=\"best\"" : "", xmlText(r.name),
           r.newest.mean, r.newest.deviation, r.newest.margin, r.concatenated.mean, r.labels.mean,
+          r.ari ? fmt::format("{:.3f}", r.ari->mean) : "", r.f1 ? fmt::format("{:.3f}", r.f1->mean) : "",
           published(world.world, r.name));
     }
     const eval::Repeat& first = world.repeats[0];
@@ -321,6 +333,8 @@ Json summaryOf(const Reproduction& all) {
                       {"ami", toJson(row.newest)},
                       {"ami_concatenated", toJson(row.concatenated)},
                       {"labels", rounded(row.labels.mean, 1e6)},
+                      {"ari", row.ari ? toJson(*row.ari) : Json()},
+                      {"f1", row.f1 ? toJson(*row.f1) : Json()},
                       {"paper", published(world.world, row.name)}});
     }
     const eval::Repeat& first = world.repeats[0];

@@ -89,7 +89,11 @@ Repeat runRepeat(const TeamWords& words, const RepeatOptions& options) {
   {
     const Stacked team = stackTeam(pick(beliefs, everyone, last));
     const TeamTally newest = tally(team.beliefs, truth, FusionRule::kNewestWins);
-    result.newest = scoreAll(team, newest, options.matchers);
+    for (const matching::MatcherOptions& m : options.matchers) {
+      const std::vector<int> labels = labelsOf(team, newest, m);
+      result.newest.push_back(score(newest, labels));
+      result.matches.push_back(matchQuality(newest, labels));
+    }
     result.concatenated =
         scoreAll(team, tally(team.beliefs, truth, FusionRule::kConcatenate), options.matchers);
     result.oracle = score(newest, majorityClasses(newest));
@@ -202,8 +206,20 @@ std::vector<Point> pointsOf(const nlohmann::json& json) {
 
 }  // namespace
 
+void to_json(nlohmann::json& json, const MatchQuality& q) {
+  json = {{"ari", q.ari}, {"precision", q.precision}, {"recall", q.recall}, {"f1", q.f1}};
+}
+
+void from_json(const nlohmann::json& json, MatchQuality& q) {
+  json.at("ari").get_to(q.ari);
+  json.at("precision").get_to(q.precision);
+  json.at("recall").get_to(q.recall);
+  json.at("f1").get_to(q.f1);
+}
+
 void to_json(nlohmann::json& json, const Repeat& r) {
   json = {{"newest", r.newest},
+          {"matches", r.matches},
           {"concatenated", r.concatenated},
           {"oracle", r.oracle},
           {"single", r.single},
@@ -220,6 +236,7 @@ void to_json(nlohmann::json& json, const Repeat& r) {
 
 void from_json(const nlohmann::json& json, Repeat& r) {
   json.at("newest").get_to(r.newest);
+  json.at("matches").get_to(r.matches);
   json.at("concatenated").get_to(r.concatenated);
   json.at("oracle").get_to(r.oracle);
   json.at("single").get_to(r.single);

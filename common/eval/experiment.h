@@ -7,6 +7,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "shoal/eval/match_quality.h"
 #include "shoal/eval/team_learning.h"
 #include "shoal/eval/team_words.h"
 #include "shoal/matching/matcher.h"
@@ -32,6 +33,7 @@ struct Point {
 /// What one repeat came to. All AMI unless said.
 struct Repeat {
   std::vector<Score> newest, concatenated;      ///< the whole team by matcher, under both fusion rules
+  std::vector<MatchQuality> matches;            ///< of the whole team's topics by matcher
   Score oracle;                                 ///< each topic given the class of most of its cells
   Score single;                                 ///< one robot that flew all shares
   Score merged;                                 ///< the team that merges its models; no cells when not asked
@@ -55,6 +57,8 @@ std::vector<Score> scoreTeam(const TeamWords& words, const LearningOptions& lear
 void to_json(nlohmann::json& json, const Repeat& repeat);
 /// @throws nlohmann::json::exception when something lacks.
 void from_json(const nlohmann::json& json, Repeat& repeat);
+void to_json(nlohmann::json& json, const MatchQuality& quality);
+void from_json(const nlohmann::json& json, MatchQuality& quality);
 void to_json(nlohmann::json& json, const Score& score);
 void from_json(const nlohmann::json& json, Score& score);
 

@@ -70,7 +70,8 @@ Stacked stackTeam(std::vector<mapping::LocalBelief> team) {
   return {mapping::stack(store).descriptors, std::move(team)};
 }
 
-Score scoreMatcher(const Stacked& team, const TeamTally& tally, const matching::MatcherOptions& matcher) {
+std::vector<int> labelsOf(const Stacked& team, const TeamTally& tally,
+                          const matching::MatcherOptions& matcher) {
   const matching::Clustering clustering = matching::match(team.descriptors, matcher);
   std::map<std::pair<int32_t, int32_t>, int> label;
   size_t vertex = 0;
@@ -85,7 +86,11 @@ Score scoreMatcher(const Stacked& team, const TeamTally& tally, const matching::
     const auto known = label.find({number(topic.robot), number(topic.topic)});
     labels.push_back(known == label.end() ? alone++ : known->second);
   }
-  return score(tally, labels);
+  return labels;
+}
+
+Score scoreMatcher(const Stacked& team, const TeamTally& tally, const matching::MatcherOptions& matcher) {
+  return score(tally, labelsOf(team, tally, matcher));
 }
 
 }  // namespace shoal::eval

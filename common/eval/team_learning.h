@@ -47,6 +47,10 @@ struct Stacked {
 };
 Stacked stackTeam(std::vector<mapping::LocalBelief> team);
 
+/// The label that a matcher gives each topic of a tally, which was taken from stackTeam().beliefs.
+std::vector<int> labelsOf(const Stacked& team, const TeamTally& tally,
+                          const matching::MatcherOptions& matcher);
+
 /// Scores one matcher on a team whose tally was taken from stackTeam().beliefs.
 Score scoreMatcher(const Stacked& team, const TeamTally& tally, const matching::MatcherOptions& matcher);
 
