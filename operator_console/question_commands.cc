@@ -51,14 +51,14 @@ void labels(Question& q) {
     const bool has_library = row.contains("library");
     knows |= has_library;
     fmt::print(
-        "{:>9}{} {} {:>7} {:>10.1f} {:>15} {:>5.2f}  {}{}\n", label,
+        "{:>9}{} {} {:>7} {:>10.1f} {:>15} {:>5}  {}{}\n", label,
         !has_library             ? ' '
         : row["library"].empty() ? '+'
                                  : '*',
         shortened(row["name"].get<std::string>(), 14), row["cells"].get<int64_t>(),
         row["area_m2"].get<double>(),
         fmt::format("{:.0f} - {:.0f}", row["first_seen_s"].get<double>(), row["last_seen_s"].get<double>()),
-        row["certainty"].get<double>(),
+        row["certainty"] > 0 ? fmt::format("{:.2f}", row["certainty"].get<double>()) : "-",
         row["robots"].size() > 2 ? fmt::format("{} robots", row["robots"].size()) : joined(row["robots"]),
         isOnTerminal() ? " " + swatch(colorOf(world::GlobalLabel{label})) : "");
   }

@@ -18,7 +18,7 @@ std::vector<MissionEvent> labelsFound(const GlobalMap& map) {
   for (const LabelSummary& row : map.labels) {
     const world::RobotId finder{number(row.label) / 10000};  // whose topic it is named after
     events.push_back({row.first_seen.seconds(), "label", name(finder),
-                      "found " + std::to_string(number(row.label)) +
+                      "found label " + std::to_string(number(row.label)) +
                           (row.name.empty() ? "" : ", now called \"" + row.name + "\"")});
   }
   return events;

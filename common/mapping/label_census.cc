@@ -27,6 +27,7 @@ LabelCensus censusOf(std::span<const GlobalCell> cells) {
     at->column = column;
     at->count.last_seen = std::max(at->count.last_seen, c.seen);
     at->count.certainty += std::lround(c.certainty * static_cast<float>(kCertaintySteps));
+    at->count.sure += c.certainty > 0;
   }
   LabelCensus census;
   for (const auto& [label, counting] : labels) census.emplace_hint(census.end(), label, counting.count);
@@ -40,6 +41,7 @@ void add(LabelCensus& sum, const LabelCensus& part) {
     known->second.columns += count.columns;
     known->second.last_seen = std::max(known->second.last_seen, count.last_seen);
     known->second.certainty += count.certainty;
+    known->second.sure += count.sure;
   }
 }
 

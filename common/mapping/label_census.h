@@ -14,6 +14,7 @@ struct LabelCount {
   int64_t columns = 0;         ///< distinct (x, y) among them
   world::Timestamp last_seen;  ///< the latest among them
   int64_t certainty = 0;       ///< sum, in steps of 1 / kCertaintySteps
+  int64_t sure = 0;            ///< cells whose certainty has been heard and is above 0
   bool operator==(const LabelCount&) const = default;
 };
 

@@ -101,7 +101,7 @@ Json labelRows(const std::vector<LabelSummary>& labels, const LabelCensus& censu
     for (const world::RobotId robot : row.robots) robots.push_back(name(robot));
     const auto found = census.find(row.label);
     const LabelCount count = found == census.end() ? LabelCount{} : found->second;
-    const double cells = static_cast<double>(std::max<int64_t>(row.cells, 1));
+    const double sure = static_cast<double>(std::max<int64_t>(count.sure, 1));
     rows.push_back(
         {{"label", number(row.label)},
          {"name", row.name},
@@ -110,7 +110,7 @@ Json labelRows(const std::vector<LabelSummary>& labels, const LabelCensus& censu
          {"robots", std::move(robots)},
          {"first_seen_s", rounded(row.first_seen.seconds(), 1e3)},
          {"last_seen_s", rounded(count.last_seen.seconds(), 1e3)},
-         {"certainty", rounded(static_cast<double>(count.certainty) / kCertaintySteps / cells, 1e4)}});
+         {"certainty", rounded(static_cast<double>(count.certainty) / kCertaintySteps / sure, 1e4)}});
   }
   return rows;
 }

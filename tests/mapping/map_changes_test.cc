@@ -175,7 +175,7 @@ TEST(MapChangesTest, AnAnswerWithoutADigestIsWhole) {
   EXPECT_THROW(readChange(answer, "test"), std::runtime_error);
 }
 
-// By hand: label 1 lies in two columns of three cells, label 2 in one of them.
+// By hand: label 1 lies in two columns of three cells, label 2 in one of them. One certainty was not heard.
 TEST(LabelCensusTest, CountsColumnsOnce) {
   const world::GlobalLabel one{1}, two{2};
   const world::RobotId robot{0};
@@ -184,10 +184,11 @@ TEST(LabelCensusTest, CountsColumnsOnce) {
                                          {{0, 0, 2}, one, robot, {-3}, 0.f},
                                          {{0, 1, 0}, one, robot, {7}, 2.f / 63}};
   LabelCensus census = censusOf(cells);
-  EXPECT_EQ(census, (LabelCensus{{one, {2, {7}, 65}}, {two, {1, {9}, 1}}}));
-  add(census, {{two, {3, {4}, 10}}, {world::GlobalLabel{3}, {1, {-1}, 0}}});
+  EXPECT_EQ(census, (LabelCensus{{one, {2, {7}, 65, 2}}, {two, {1, {9}, 1, 1}}}));
+  add(census, {{two, {3, {4}, 10, 5}}, {world::GlobalLabel{3}, {1, {-1}, 0, 0}}});
   EXPECT_EQ(census,
-            (LabelCensus{{one, {2, {7}, 65}}, {two, {4, {9}, 11}}, {world::GlobalLabel{3}, {1, {-1}, 0}}}));
+            (LabelCensus{
+                {one, {2, {7}, 65, 2}}, {two, {4, {9}, 11, 6}}, {world::GlobalLabel{3}, {1, {-1}, 0, 0}}}));
 }
 
 }  // namespace

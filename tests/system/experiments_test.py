@@ -78,6 +78,8 @@ class Experiments(unittest.TestCase):
         mean = sum(ami) / 3
         self.assertAlmostEqual(row["ami"]["mean"], mean, 5)
         self.assertAlmostEqual(row["ami"]["deviation"], (sum((a - mean) ** 2 for a in ami) / 2) ** 0.5, 5)
+        self.assertAlmostEqual(row["ari"]["mean"], sum(r["matches"][clear]["ari"] for r in repeats) / 3, 5)
+        self.assertAlmostEqual(row["f1"]["mean"], sum(r["matches"][clear]["f1"] for r in repeats) / 3, 5)
         for name, columns in (("by_robots", "robots"), ("by_images", "images"), ("by_shares", "shares")):
             with open(os.path.join(self.out, name + ".csv"), encoding="utf-8") as file:
                 rows = list(csv.DictReader(file))
