@@ -26,7 +26,7 @@ import jsonschema
 
 BIN, DOCS = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
 CONSOLE = os.path.join(BIN, "operator_console")
-TILE, LOWER = 16 + 1024 * 13, 16
+TILE, LOWER = 16 + 1024 * 14, 16
 
 
 def schema(name):
@@ -91,19 +91,22 @@ def tiles(content):
     """What /api/map says as {(x, y): (label, robot)} from above, and the header."""
     magic, count, cell_size, base, sequence, since, life = struct.unpack_from("<4sIddQQQ", content)
     assert magic == b"SHT2", magic
-    cells, at, num_lower = {}, 48, 0
+    cells, at, num_lower, surprises = {}, 48, 0, {}
     for _ in range(count):
         x, y, lower, zero = struct.unpack_from("<iiII", content, at)
         assert zero == 0
         label = struct.unpack_from("<1024i", content, at + 16)
         robot = struct.unpack_from("<1024h", content, at + 16 + 8192)
+        surprise = content[at + 16 + 13 * 1024:at + 16 + 14 * 1024]
         for i in range(1024):
             if label[i] >= 0:
                 cells[32 * x + i % 32, 32 * y + i // 32] = label[i], robot[i]
+                if surprise[i] > 0:
+                    surprises[32 * x + i % 32, 32 * y + i // 32] = surprise[i] / 8
         at += TILE + lower * LOWER
         num_lower += lower
     assert at == len(content), (at, len(content))
-    return cells, {"cell_size": cell_size, "sequence": sequence, "since": since, "life": life, "count": count, "lower": num_lower}
+    return cells, {"cell_size": cell_size, "sequence": sequence, "since": since, "life": life, "count": count, "lower": num_lower, "surprises": surprises}
 
 
 class Serve(unittest.TestCase):
@@ -128,7 +131,8 @@ class Serve(unittest.TestCase):
         for path, arguments, name in [("status", ["status"], "status"), ("labels", ["labels"], "labels"), ("edits", ["edits"], "edits"),
                                       (f"at?x={x}&y={y}", ["at", x, y], "at"), (f"why?label={label}", ["why", str(label)], "why"),
                                       (f"area?label={label}&min_m2=2", ["area", str(label), "--min-m2", "2"], "area"),
-                                      ("node?node=R01", ["node", "R01"], "node"), ("diff?from=2&until=5", ["diff", "2", "5"], "diff")]:
+                                      ("node?node=R01", ["node", "R01"], "node"),
+                                      ("surprises?least=2", ["surprises", "--least", "2"], "surprises"), ("diff?from=2&until=5", ["diff", "2", "5"], "diff")]:
             answer = self.server.json("/api/" + path)
             jsonschema.validate(answer, schema(name))
             told = json.loads(command(*arguments, "--run", self.run_dir, "--json"))
@@ -148,6 +152,20 @@ class Serve(unittest.TestCase):
                     expected[key] = float(z), int(label), int(robot[1:])
         self.assertGreater(len(cells), 50)
         self.assertEqual(cells, {key: value[1:] for key, value in expected.items()})
+        whole = tiles(self.server.ask("/api/map?cells=all")[1])
+        self.assertEqual(whole[0], cells)
+        with open(os.path.join(self.run_dir, "global_map.csv"), encoding="utf-8") as file:
+            self.assertEqual(len(cells) + whole[1]["lower"], len(file.readlines()) - 1)
+        top = {key: value[0] for key, value in expected.items()}
+        with open(os.path.join(self.run_dir, "surprise.csv"), encoding="utf-8") as file:
+            told = {}
+            for row in file.readlines()[1:]:
+                x, y, z, _, _, _, surprise = row.split(",")
+                key = round(float(x) / size), round(float(y) / size)
+                if float(z) == top[key]:
+                    told[key] = float(surprise)
+        self.assertGreater(len(told), 3)
+        self.assertEqual(header["surprises"], told)
         nothing = tiles(self.server.ask(f"/api/map?since={header['sequence']}&life={header['life']}")[1])
         self.assertEqual(nothing[1]["count"], 0)
         stranger = tiles(self.server.ask(f"/api/map?since={header['sequence']}&life=1")[1])
@@ -250,6 +268,26 @@ class Serve(unittest.TestCase):
         with Server("--log", os.path.join(self.run_dir, "mission.lcmlog")) as other:
             self.assertFalse(other.settled()["truth"])
             self.assertEqual(other.ask("/api/classes")[0].status, 404)
+
+    def test_what_the_library_names_says_so(self):
+        with tempfile.TemporaryDirectory(prefix="shoal_library_") as top:
+            first, second, file = (os.path.join(top, name) for name in ("first", "second", "reef.library"))
+            shutil.copytree(self.run_dir, first)
+            rows = json.loads(command("labels", "--run", first, "--json"))["labels"]
+            command("name", str(max(rows, key=lambda row: row["cells"])["label"]), "sand", "--run", first)
+            command("library", "save", "--run", first, "--out", file)
+            command("launch", "--world", "reef:tuning", "--robots", "2", "--observations", "6", "--seed", "7", "--library", file, "--record",
+                    "--out", second)
+            for recorded in (True, False):
+                if not recorded:
+                    os.remove(os.path.join(second, "mission.lcmlog"))
+                with Server("--run", second) as server:
+                    server.settled()
+                    labels = server.json("/api/labels")
+                    jsonschema.validate(labels, schema("labels"))
+                    self.assertIn(["sand"], [row["library"] for row in labels["labels"]])
+                    self.assertIn([], [row["library"] for row in labels["labels"]])
+                    self.assertEqual(labels, json.loads(command("labels", "--run", second, "--json")))
 
     def test_strangers_are_turned_away(self):
         ask = self.server.ask
@@ -393,7 +431,20 @@ class Live(unittest.TestCase):
                     node.send_signal(signal.SIGINT)
                     node.wait(timeout=20)
                     self.assertRegex(server.settled("lost")["problem"], "no running node|did not answer")
-                    self.assertEqual(tiles(server.ask("/api/map")[1])[0], cells)  # what was known is still shown
+                    kept, header = tiles(server.ask("/api/map?cells=all")[1])
+                    self.assertEqual(kept, cells)  # what was known is still shown
+                    labels = server.json("/api/labels")
+                # The node's memory of it is as good as a recording.
+                (memory,) = [name for name in os.listdir(state) if name.endswith(".sqlite")]
+                with Server("--log", os.path.join(state, memory)) as server:
+                    server.settled()
+                    again, remembered = tiles(server.ask("/api/map?cells=all")[1])
+                    self.assertEqual(again, cells)
+                    for what in ("surprises", "lower"):
+                        self.assertEqual(remembered[what], header[what], what)
+                    for theirs, ours in zip(server.json("/api/labels")["labels"], labels["labels"], strict=True):
+                        del theirs["pictures"]
+                        self.assertEqual(theirs, ours)
             finally:
                 for process in started:
                     if process.poll() is None:

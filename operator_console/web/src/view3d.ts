@@ -51,7 +51,7 @@ export class View3D implements DepthView {
   private readonly isSoftware: boolean;
   private asBoxes = true;
   private grid: GridHelper | null = null; private gridStep = 0;
-  private width = 1; private height = 1;
+  private width: number; private height: number; // of the canvas, as of the last frame
   private eye = "";
   private movedAt = -Infinity; private later = 0; // when the eye or a cell moved last
 
@@ -67,6 +67,8 @@ export class View3D implements DepthView {
     this.boxes = new ShaderMaterial({ vertexShader: BOX, fragmentShader: PAINT, uniforms });
     this.squares = new ShaderMaterial({ vertexShader: SQUARE, fragmentShader: PAINT, uniforms });
     this.camera.up.set(0, 0, 1);
+    this.width = Math.max(1, map.canvas.clientWidth); this.height = Math.max(1, map.canvas.clientHeight);
+    this.renderer.setSize(this.width, this.height, false);
     for (const key of map.tiles.keys()) this.soil(key);
   }
 
