@@ -398,6 +398,7 @@ async function setDepth(on: boolean, camera: number[] | null = null): Promise<vo
   if (on) {
     try { depth = await openDepth(); } catch { view3d = null; return toast("This browser cannot draw in 3-D."); }
     map.depth = depth;
+    depth.forget(); // the map may be another since it was left
     for (const key of map.tiles.keys()) depth.soil(key);
     depth.look(map.center, map.scale);
     if (camera) [depth.azimuth, depth.elevation, depth.distance, depth.target.z] = camera;
