@@ -286,6 +286,7 @@ void MissionFeed::lookAtFiles() {
   }
   if (!where_.run.empty()) {
     const mapping::MissionView view = viewOfRun(where_.run);
+    const auto tracks = tracksOf(where_);
     const auto last = now();
     const bool has_library = std::filesystem::exists(where_.run + "/library.json");
     auto moment = momentOf(view, surprisesOfRun(where_.run, world::Grid(view.cell_size_m)),
@@ -296,6 +297,7 @@ void MissionFeed::lookAtFiles() {
       moments_ = {std::move(moment)};
       chronicle_ = {};
       for (const mapping::NodeStatus& node : view.nodes) chronicle_.hear(node);
+      for (const auto& [robot, points] : tracks) chronicle_.track(robot, points);
       chronicle_.hearLabels(moments_.back()->time_s, moments_.back()->labels);
     }
     on_change_();

@@ -448,6 +448,13 @@ class Serve(unittest.TestCase):
                     self.assertIn(["sand"], [row["library"] for row in labels["labels"]])
                     self.assertIn([], [row["library"] for row in labels["labels"]])
                     self.assertEqual(labels, json.loads(command("labels", "--run", second, "--json")))
+                    tracks = {t["robot"]: t["points"] for t in server.json("/api/tracks")["tracks"]}
+                    for robot in ("R00", "R01"):
+                        with open(os.path.join(second, "robots", robot, "poses.txt"), encoding="utf-8") as file:
+                            poses = [[float(v) for v in line.split()[:4]] for line in file if not line.startswith("#")]
+                        self.assertEqual([p[1:] for p in tracks[robot]][-1], [round(v, 3) for v in poses[-1][1:]])
+                        if not recorded:
+                            self.assertEqual(tracks[robot], [[round(v, 3) for v in pose] for pose in poses])
 
     def test_strangers_are_turned_away(self):
         ask = self.server.ask
