@@ -316,12 +316,19 @@ Json Node::answerStatus() const {
 // Likewise: only cells that have changed.
 Json Node::answerChanges(const Json& question) {
   const mapping::FusedMap& fused = state_.fused();
-  return map_changes_.answer({.cell_size_m = state_.cellSize(),
-                              .digest = fused.digest(),
-                              .labels = fused.labels(),
-                              .hashes = fused.columnHashes(),
-                              .cells_in = [&fused](const auto& columns) { return fused.cellsIn(columns); }},
-                             question);
+  surprises_.update(state_.beliefs());
+  std::map<mapping::BrickColumn, uint64_t> hashes = fused.columnHashes();
+  for (auto& [column, hash] : hashes) hash += surprises_.hashOf(column);
+  Json answer =
+      map_changes_.answer({.cell_size_m = state_.cellSize(),
+                           .digest = fused.digest(),
+                           .labels = fused.labels(),
+                           .hashes = std::move(hashes),
+                           .cells_in = [&fused](const auto& columns) { return fused.cellsIn(columns); },
+                           .surprises_of = [this](const auto& cells) { return surprises_.of(cells); }},
+                          question);
+  mapping::addLibraryNames(answer["labels"], overview().map, state_.beliefs());
+  return answer;
 }
 
 // Says the price, and unless that is all, asks on the link.

@@ -20,6 +20,7 @@
 #include "shoal/comms/sender.h"
 #include "shoal/mapping/library.h"
 #include "shoal/mapping/map_changes.h"
+#include "shoal/mapping/told_surprises.h"
 
 namespace shoal::fusion_node {
 
@@ -88,7 +89,8 @@ class Node {
   Repair repair_;
   std::optional<NodeMemory> memory_;
   std::optional<QueryServer> queries_;
-  mapping::MapChanges map_changes_;  // as consoles were told
+  mapping::ToldSurprises surprises_;  // as of the last time that a console asked
+  mapping::MapChanges map_changes_;   // as consoles were told
   SilenceAlarm silence_;
   std::map<std::string, size_t> num_chunks_;  // in the send queue, by channel
   size_t warned_of_strangers_ = 0;

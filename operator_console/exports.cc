@@ -15,6 +15,7 @@
 #include "operator_console/label_pictures.h"
 #include "operator_console/ply.h"
 #include "operator_console/render.h"
+#include "operator_console/robot_tracks.h"
 #include "shoal/mapping/map_files.h"
 
 namespace shoal::console {
@@ -39,6 +40,15 @@ std::string mcapOf(const Where& where, const mapping::MissionView& view, const G
   return missionMcap(view, picturesAt(where), events, frame);
 }
 
+std::map<std::string, std::vector<TrackPoint>> tracksIfAny(const Where& where) {
+  try {
+    return tracksOf(where);
+  } catch (const std::runtime_error& error) {  // the map is there all the same
+    spdlog::warn("no tracks: {}", error.what());
+    return {};
+  }
+}
+
 std::vector<ExportedFile> filesOf(const Where& where, const mapping::MissionView& view,
                                   const std::string& format, const std::string& file, const GeoFrame* frame) {
   const std::string stem = std::filesystem::path(file).stem();
@@ -51,7 +61,7 @@ std::vector<ExportedFile> filesOf(const Where& where, const mapping::MissionView
             {file + ".aux.xml", geotiffLegend(view)},
             {stem + "_certainty.tif", certaintyGeoTiff(view, frame)}};
   }
-  if (format == "kml") return {{file, patchesKml(view, *frame)}};
+  if (format == "kml") return {{file, patchesKml(view, tracksIfAny(where), *frame)}};
   if (format == "ply") return {{file, globalMapPly(view.map, grid)}};
   if (format == "octree") return {{file, colorOcTree(view)}};
   if (format == "mcap") return {{file, mcapOf(where, view, frame)}};
@@ -70,7 +80,7 @@ const std::vector<ExportFormat>& exportFormats() {
        "labels and certainty as pictures for QGIS and GDAL",
        {"map.tif.aux.xml", "map_certainty.tif"},
        Origin::kTaken},
-      {"kml", "map.kml", "patches for Google Earth", {}, Origin::kNeeded},
+      {"kml", "map.kml", "patches and tracks for Google Earth", {}, Origin::kNeeded},
       {"ply", "map.ply", "points for CloudCompare and MeshLab"},
       {"octree", "map.ot", "a coloured OctoMap"},
       {"mcap",

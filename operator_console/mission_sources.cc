@@ -15,11 +15,13 @@
 #include "shoal/eval/evaluation.h"
 #include "shoal/mapping/atomic_file.h"
 #include "shoal/mapping/belief_pieces.h"
+#include "shoal/mapping/csv.h"
 #include "shoal/mapping/edit_question.h"
 #include "shoal/mapping/edits_answer.h"
 #include "shoal/mapping/edits_file.h"
 #include "shoal/mapping/fusion.h"
 #include "shoal/mapping/library.h"
+#include "shoal/mapping/local_belief.h"
 #include "shoal/mapping/map_files.h"
 #include "shoal/mapping/questions.h"
 
@@ -113,6 +115,24 @@ mapping::MissionView viewOfRun(const std::string& dir) {
   view.map.state_digest = of_state;
   view.map_digest = view.map.digest();
   return view;
+}
+
+mapping::ToldSurprises surprisesOfRun(const std::string& dir, const world::Grid& grid) {
+  mapping::ToldSurprises told;
+  std::error_code none;
+  for (const auto& entry : std::filesystem::directory_iterator(dir + "/robots", none)) {
+    const auto robot = world::parseRobotId(entry.path().filename().string());
+    const std::string path = entry.path().string() + "/surprise.csv";
+    if (!robot || !std::filesystem::exists(path)) continue;
+    for (const auto& row :
+         mapping::parseCsv(mapping::readFile(path), {"x_m", "y_m", "z_m", "surprise"}, path)) {
+      const uint8_t steps = mapping::surpriseSteps(static_cast<float>(mapping::toReal(row[3], path)));
+      const Eigen::Vector3d at{mapping::toReal(row[0], path), mapping::toReal(row[1], path),
+                               mapping::toReal(row[2], path)};
+      if (steps > 0) told.tell(*robot, grid.cellOf(at), steps);
+    }
+  }
+  return told;
 }
 
 namespace {

@@ -6,6 +6,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "shoal/mapping/queries.h"
+#include "shoal/mapping/told_surprises.h"
 #include "shoal/matching/matcher.h"
 
 namespace shoal::console {
@@ -21,6 +22,10 @@ struct Where {
 /// A finished run, from its files; when something was decided (edits.json), fused anew from the robots' own.
 /// @throws std::runtime_error naming the file that is missing or broken.
 mapping::MissionView viewOfRun(const std::string& dir);
+
+/// What surprised its robots, from their own files; nothing in runs of older builds.
+/// @throws std::runtime_error naming the file that is broken.
+mapping::ToldSurprises surprisesOfRun(const std::string& dir, const world::Grid& grid);
 
 /// The whole map with everything that is known, wherever it is asked of.
 /// @throws std::runtime_error as viewOfRun() and readRecording(), or when no node answers.

@@ -132,6 +132,23 @@ Rgb colorOf(world::GlobalLabel label) {
   return {c[0], c[1], c[2]};
 }
 
+// Okabe and Ito's, then Tol's muted ones.
+Rgb robotColor(world::RobotId robot) {
+  static constexpr std::array<Rgb, 12> kColors = {{{0x00, 0x72, 0xb2},
+                                                   {0xe6, 0x9f, 0x00},
+                                                   {0x00, 0x9e, 0x73},
+                                                   {0xcc, 0x79, 0xa7},
+                                                   {0xd5, 0x5e, 0x00},
+                                                   {0x56, 0xb4, 0xe9},
+                                                   {0x33, 0x22, 0x88},
+                                                   {0x99, 0x99, 0x33},
+                                                   {0x88, 0x22, 0x55},
+                                                   {0x44, 0xaa, 0x99},
+                                                   {0x11, 0x77, 0x33},
+                                                   {0xaa, 0x44, 0x99}}};
+  return kColors[static_cast<size_t>(world::number(robot)) % kColors.size()];
+}
+
 LegendPictures legendPictures(const mapping::LabelPictures& pictures) {
   LegendPictures shown;
   for (const auto& [label, held] : pictures) shown[label] = fusion_node::pixelsOf(held.front());

@@ -23,6 +23,9 @@ using Rgb = std::array<uint8_t, 3>;
 /// The colour of a label: always the same, whatever else is on the map.
 Rgb colorOf(world::GlobalLabel label);
 
+/// The colour of a robot's track, as the page of serve has it.
+Rgb robotColor(world::RobotId robot);
+
 /// The truth to draw beside a map.
 struct TruthPicture {
   std::vector<world::TruthClass> classes;

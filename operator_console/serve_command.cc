@@ -16,6 +16,7 @@
 #include "operator_console/asking.h"
 #include "operator_console/command.h"
 #include "operator_console/serve/api.h"
+#include "operator_console/serve/foxglove_server.h"
 
 namespace shoal::console {
 namespace {
@@ -25,6 +26,8 @@ struct Serving {
   HttpOptions http;
   TruthHint hint;
   bool read_only = false;
+  std::optional<uint16_t> foxglove;  // port
+  std::vector<std::string> origins;
 };
 
 std::string hostName() {
@@ -55,14 +58,24 @@ int serve(const Serving& flags) {
     api = &answers;
     server = &http;
   }
+  std::optional<FoxgloveServer> foxglove;
+  if (flags.foxglove)
+    foxglove.emplace(FoxgloveOptions{flags.http.host, *flags.foxglove, flags.origins}, gate, *feed);
+  const std::string looks =
+      foxglove ? fmt::format("ws://{}:{}", flags.http.host == "0.0.0.0" ? hostName() : flags.http.host,
+                             foxglove->port())
+               : "";
   const std::string url =
       fmt::format("http://{}:{}/{}", flags.http.host == "0.0.0.0" ? hostName() : flags.http.host, http.port(),
                   gate.token.empty() ? "" : "#token=" + gate.token);
   if (flags.asking.json) {
-    std::cout << nlohmann::ordered_json{{"url", url}, {"port", http.port()}, {"token", gate.token}}.dump()
-              << std::endl;
+    nlohmann::ordered_json said{{"url", url}, {"port", http.port()}, {"token", gate.token}};
+    if (foxglove) said["foxglove"] = looks;
+    std::cout << said.dump() << std::endl;
   } else {
-    fmt::print("The mission is at {}\nCtrl-C ends this.\n", url);
+    fmt::print("The mission is at {}\n", url);
+    if (foxglove) fmt::print("Foxglove and Lichtblick open a connection to {}\n", looks);
+    fmt::print("Ctrl-C ends this.\n");
     std::fflush(stdout);
   }
   while (!fusion_node::stopRequested()) std::this_thread::sleep_for(std::chrono::milliseconds(100));
@@ -70,6 +83,7 @@ int serve(const Serving& flags) {
     const std::lock_guard lock(mutex);
     server = nullptr;
   }
+  foxglove.reset();
   feed.reset();
   return 0;
 }
@@ -91,11 +105,20 @@ void addServeCommand(CLI::App& app, Action& chosen) {
   command->add_option("--seed", flags->hint.seed, "of the mission, for --world with --node and --log")
       ->capture_default_str();
   command->add_flag("--read-only", flags->read_only, "nobody may name, link or exclude");
+  command->add_option(
+      "--foxglove", flags->foxglove,
+      "also listen on this port for Foxglove and Lichtblick (usually 8765; 0: any free port)");
+  command
+      ->add_option("--foxglove-origin", flags->origins,
+                   "a site whose pages may look through that port, such as https://app.foxglove.dev; "
+                   "programs need none")
+      ->allow_extra_args(false);
   command->footer(
       "The URL that is printed holds a token; who opens the page without it can look, and change nothing.\n"
       "What the page asks is described in /openapi.json, and is there for scripts too.\n\n"
       "  operator_console serve --node state\n"
       "  operator_console serve --run runs/a --port 8081 --read-only\n"
+      "  operator_console serve --node state --foxglove 8765\n"
       "  curl -s 'http://127.0.0.1:8080/api/area?label=10004&min_m2=3'");
   command->callback([flags, &chosen] { chosen = [flags] { return serve(*flags); }; });
 }

@@ -12,6 +12,8 @@ namespace shoal::mapping {
 
 /// A column of bricks, named by x and y of their index.
 using BrickColumn = std::pair<int32_t, int32_t>;
+/// The one that holds a cell: floor division by kBrickEdge.
+inline BrickColumn brickColumnOf(const world::CellIndex& cell) { return {cell.x >> 4, cell.y >> 4}; }
 
 /// A cell of the fused map, as the robot that saw it last labels it.
 struct GlobalCell {

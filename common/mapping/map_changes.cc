@@ -27,8 +27,6 @@ std::set<BrickColumn> differing(const std::map<BrickColumn, uint64_t>& before,
   return columns;
 }
 
-BrickColumn columnOf(const world::CellIndex& cell) { return {cell.x >> 4, cell.y >> 4}; }
-
 }  // namespace
 
 // Brings the census of every column up to date.
@@ -40,7 +38,7 @@ void MapChanges::count(const MapInColumns& map) {
     if (known == counted_.end() || known->second.hash != hash) stale.insert(column);
   }
   std::map<BrickColumn, std::vector<GlobalCell>> cells;
-  for (const GlobalCell& c : map.cells_in(stale)) cells[columnOf(c.cell)].push_back(c);
+  for (const GlobalCell& c : map.cells_in(stale)) cells[brickColumnOf(c.cell)].push_back(c);
   for (const auto& [column, list] : cells) counted_[column] = {map.hashes.at(column), censusOf(list)};
 }
 
@@ -64,6 +62,10 @@ Json MapChanges::answer(const MapInColumns& map, const Json& question) {
     answer["columns"] = columns;
   }
   answer["global_map_csv"] = globalMapCsv(part, grid);
+  answer["surprises"] = Json::array();
+  const std::vector<uint8_t> surprises = map.surprises_of(part.cells);
+  for (size_t i = 0; i < surprises.size(); ++i)
+    if (surprises[i] > 0) answer["surprises"].push_back({i, surprises[i]});
   answer["labels_csv"] = labelsCsv(map.labels, areasOf(census, grid));
   answer["labels"] = labelRows(map.labels, census, grid);
   std::erase_if(told_, [&digest](const Told& told) { return told.digest == digest; });
@@ -79,7 +81,16 @@ MapChange readChange(const Json& answer, const std::string& origin) {
   change.is_whole = !answer.contains("columns");
   if (!change.is_whole) change.columns = answer.at("columns").get<std::set<BrickColumn>>();
   change.digest = answer.value("digest", "");
-  const auto is_told = [&change](const GlobalCell& c) { return change.columns.contains(columnOf(c.cell)); };
+  if (answer.contains("surprises")) {
+    change.surprises.resize(change.part.cells.size());
+    for (const auto& [row, steps] : answer.at("surprises").get<std::vector<std::pair<size_t, uint8_t>>>()) {
+      if (row >= change.surprises.size()) throw std::runtime_error(origin + " told of a surprise nowhere");
+      change.surprises[row] = steps;
+    }
+  }
+  const auto is_told = [&change](const GlobalCell& c) {
+    return change.columns.contains(brickColumnOf(c.cell));
+  };
   if (!change.is_whole && !std::ranges::all_of(change.part.cells, is_told)) {
     throw std::runtime_error(origin + " told of cells outside the columns that it named");
   }

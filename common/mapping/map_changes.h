@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -23,12 +24,15 @@ struct MapInColumns {
   const std::vector<LabelSummary>& labels;
   std::map<BrickColumn, uint64_t> hashes;  ///< of what each column of bricks shows; none for empty ones
   std::function<std::vector<GlobalCell>(const std::set<BrickColumn>&)> cells_in;  ///< ascending by cell
+  /// What surprised in these cells: ToldSurprises::of().
+  std::function<std::vector<uint8_t>(std::span<const GlobalCell>)> surprises_of;
 };
 
 /// Tells a growing map again and again at the cost of what has changed: to {"query": "map", "has": DIGEST} it
 /// answers as to {"query": "map"}, with the map's "digest" and the rows of {"query": "labels"}; and when the
 /// map of that digest is among the last few that it told, with "since": DIGEST and "columns": [[x, y], ...],
-/// the squares of 16 x 16 columns that look different since, and the cells of these alone.
+/// the squares of 16 x 16 columns that look different since, and the cells of these alone. "surprises": [[row
+/// of the cells, steps of 1 / kSurpriseStepsPerUnit], ...], for those cells that surprised.
 class MapChanges {
  public:
   /// @param question  "has": sixteen hexadecimal digits, or "" for somebody who has nothing yet.
@@ -58,6 +62,7 @@ struct MapChange {
   std::set<BrickColumn>
       columns;     ///< else: those that `part` holds the cells of, and nothing where it has none
   GlobalMap part;  ///< labels are always whole; correspondences are not told
+  std::vector<uint8_t> surprises;  ///< of part.cells, as ToldSurprises::of(); empty: nothing is known
 };
 
 /// Reads an answer. @param origin  for error messages.

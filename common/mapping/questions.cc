@@ -44,19 +44,11 @@ Json picturesOf(const Witness& witness, const Json& question) {
   return picturesAnswer(picturesOfLabels(witness.view.map, beliefs, static_cast<size_t>(most)));
 }
 
-// With a library in force, each label says what it is called there: nothing when it is new.
 Json labelsOf(const Witness& witness) {
-  const MissionView& view = witness.view;
-  Json answer = labelsAnswer(view);
-  if (std::ranges::find(view.map.correspondences, kLibrary, &Correspondence::robot) ==
-      view.map.correspondences.end()) {
-    return answer;
-  }
-  const auto names = libraryNames(view.map, witness.beliefs());
-  for (Json& row : answer["labels"]) {
-    const auto known = names.find(world::GlobalLabel{row["label"].get<int32_t>()});
-    row["library"] = known == names.end() ? std::vector<std::string>{} : known->second;
-  }
+  const GlobalMap& map = witness.view.map;
+  Json answer = labelsAnswer(witness.view);
+  if (std::ranges::find(map.correspondences, kLibrary, &Correspondence::robot) != map.correspondences.end())
+    addLibraryNames(answer["labels"], map, witness.beliefs());
   return answer;
 }
 
@@ -68,6 +60,15 @@ Json mapAnswer(const MissionView& view) {
 }
 
 }  // namespace
+
+void addLibraryNames(Json& rows, const GlobalMap& map, const BeliefStore& beliefs) {
+  if (beliefs.epochOf(kLibrary) < 0) return;
+  const auto names = libraryNames(map, beliefs);
+  for (Json& row : rows) {
+    const auto known = names.find(world::GlobalLabel{row["label"].get<int32_t>()});
+    row["library"] = known == names.end() ? std::vector<std::string>{} : known->second;
+  }
+}
 
 Json answer(const Witness& witness, const Json& question) {
   const MissionView& view = witness.view;

@@ -34,4 +34,8 @@ struct Witness {
 /// A question is a peer's text: one that is unknown, incomplete or wrong is answered with {"error": ...}.
 nlohmann::ordered_json answer(const Witness& witness, const nlohmann::ordered_json& question);
 
+/// With a library in force, each row of "labels" says what its label is called there, as "library": an empty
+/// list when it is new. @param map  With its correspondences.
+void addLibraryNames(nlohmann::ordered_json& rows, const GlobalMap& map, const BeliefStore& beliefs);
+
 }  // namespace shoal::mapping

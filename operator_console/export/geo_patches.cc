@@ -83,6 +83,21 @@ std::string placemarkKml(const Json& patch, const std::string& style, const std:
   return kml + "</MultiGeometry></Placemark>\n";
 }
 
+std::string trackKml(const std::string& robot, const std::vector<TrackPoint>& points, const GeoFrame& frame) {
+  const Rgb c = robotColor(world::parseRobotId(robot).value_or(world::RobotId{0}));
+  std::string kml = fmt::format(
+      "<Placemark><name>{}</name><description>{} places from {:.1f} to {:.1f} "
+      "s</description><Style><LineStyle>"
+      "<color>ff{:02x}{:02x}{:02x}</color><width>2</width></LineStyle></Style><LineString>"
+      "<altitudeMode>relativeToGround</altitudeMode><coordinates>",
+      xmlText(robot), points.size(), points.front().time_s, points.back().time_s, c[2], c[1], c[0]);
+  for (size_t i = 0; i < points.size(); ++i) {
+    const auto at = frame.degreesOf(points[i].x, points[i].y);
+    kml += fmt::format("{}{:.9f},{:.9f},{:.3f}", i == 0 ? "" : " ", at.longitude, at.latitude, points[i].z);
+  }
+  return kml + "</coordinates></LineString></Placemark>\n";
+}
+
 }  // namespace
 
 std::string patchesGeoJson(const mapping::MissionView& view, const GeoFrame* frame) {
@@ -130,7 +145,8 @@ std::string patchesStyle(const mapping::MissionView& view) {
          "    </symbols>\n  </renderer-v2>\n  <layerGeometryType>2</layerGeometryType>\n</qgis>\n";
 }
 
-std::string patchesKml(const mapping::MissionView& view, const GeoFrame& frame) {
+std::string patchesKml(const mapping::MissionView& view,
+                       const std::map<std::string, std::vector<TrackPoint>>& tracks, const GeoFrame& frame) {
   std::string kml = fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<kml "
       "xmlns=\"http://www.opengis.net/kml/2.2\">\n<Document>\n"
@@ -162,7 +178,11 @@ std::string patchesKml(const mapping::MissionView& view, const GeoFrame& frame) 
         "</coordinates></Point></Placemark>\n",
         xmlText(node.name), xmlText(node.phase), node.heard_s, at.longitude, at.latitude);
   }
-  return kml + "</Folder>\n</Document>\n</kml>\n";
+  kml += "</Folder>\n";
+  if (!tracks.empty()) kml += "<Folder><name>tracks</name>\n";
+  for (const auto& [robot, points] : tracks) kml += trackKml(robot, points, frame);
+  if (!tracks.empty()) kml += "</Folder>\n";
+  return kml + "</Document>\n</kml>\n";
 }
 
 }  // namespace shoal::console

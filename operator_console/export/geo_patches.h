@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <map>
 #include <string>
+#include <vector>
 
 #include <nlohmann/json_fwd.hpp>
 
 #include "operator_console/export/geo_frame.h"
+#include "operator_console/robot_tracks.h"
 #include "shoal/mapping/queries.h"
 
 namespace shoal::console {
@@ -18,8 +21,9 @@ std::string patchesGeoJson(const mapping::MissionView& view, const GeoFrame* fra
 /// map.geojson when it lies beside it as map.qml.
 std::string patchesStyle(const mapping::MissionView& view);
 
-/// The patches of all labels, a folder a label, and where robots were last heard, as KML 2.2: coloured
-/// polygons on the ground.
-std::string patchesKml(const mapping::MissionView& view, const GeoFrame& frame);
+/// The patches of all labels, a folder a label, where robots were last heard, and their tracks, as KML 2.2:
+/// coloured polygons on the ground, lines at their height above it.
+std::string patchesKml(const mapping::MissionView& view,
+                       const std::map<std::string, std::vector<TrackPoint>>& tracks, const GeoFrame& frame);
 
 }  // namespace shoal::console

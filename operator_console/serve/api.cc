@@ -131,6 +131,11 @@ HttpResponse Api::get(const HttpRequest& request) {
   if (path == "/api/area") return area(request);
   if (path == "/api/why") return asked({{"query", "why"}, {"label", text(request, "label")}});
   if (path == "/api/node") return asked({{"query", "node"}, {"node", text(request, "node")}});
+  if (path == "/api/surprises") {
+    Json question{{"query", "surprises"}};
+    if (find(request, "least") != nullptr) question["least"] = number(request, "least");
+    return asked(question);
+  }
   if (path == "/api/edits") return asked({{"query", "edits"}});
   if (path == "/api/diff") return diff(request);
   if (path == "/api/pictures") return pictures(request);
@@ -254,8 +259,10 @@ HttpResponse Api::diff(const HttpRequest& request) const {
   if (!(0 <= from_s && from_s <= until_s && until_s <= 4e12)) {
     throw std::invalid_argument("diff goes from the earlier to the later mission time, seconds");
   }
-  const auto viewAt = [log = recordingOf(where_), matcher = matcherOf(where_)](double time_s) {
-    return readRecording(log, matcher, {}, world::Timestamp{std::llround(time_s * 1e6)}).state.view();
+  const auto viewAt = [&where = where_, log = recordingOf(where_),
+                       matcher = matcherOf(where_)](double time_s) {
+    const world::Timestamp until{std::llround(time_s * 1e6)};
+    return readRecording(log, matcher, {}, until, where.key).state.view();
   };
   return json(mapping::diffAnswer(viewAt(from_s), from_s, viewAt(until_s), until_s));
 }

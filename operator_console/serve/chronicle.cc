@@ -52,15 +52,8 @@ void Chronicle::hear(const mapping::NodeStatus& node, const std::map<std::string
   life.phase = node.phase;
   life.budget = node.budget;
   life.heard_s = node.heard_s;
-  if (node.phase != "node" && node.observation >= 0) {
-    if (life.skipped++ % life.stride == 0)
-      life.points.push_back({node.heard_s, node.x_m, node.y_m, node.z_m});
-    if (life.points.size() > kMaxPoints) {
-      for (size_t i = 0; 2 * i < life.points.size(); ++i) life.points[i] = life.points[2 * i];
-      life.points.resize((life.points.size() + 1) / 2);
-      life.stride *= 2;
-    }
-  }
+  if (node.phase != "node" && node.observation >= 0)
+    follow(life, {node.heard_s, node.x_m, node.y_m, node.z_m});
   std::map<std::string, int64_t> sent = class_bytes;
   if (sent.empty()) sent["sent"] = node.bytes_sent;
   auto& bin = life.bins[static_cast<int64_t>(std::floor(node.heard_s / bin_s_))];
@@ -70,6 +63,24 @@ void Chronicle::hear(const mapping::NodeStatus& node, const std::map<std::string
     life.sent[name] = bytes;
   }
   while (life.bins.size() > kMaxBins) coarsen();
+}
+
+// Every second point goes when there are many, and from then on every second one is left out.
+void Chronicle::follow(Life& life, const TrackPoint& point) {
+  if (life.skipped++ % life.stride == 0) life.points.push_back(point);
+  if (life.points.size() <= kMaxPoints) return;
+  for (size_t i = 0; 2 * i < life.points.size(); ++i) life.points[i] = life.points[2 * i];
+  life.points.resize((life.points.size() + 1) / 2);
+  life.stride *= 2;
+}
+
+void Chronicle::track(const std::string& node, const std::vector<TrackPoint>& points) {
+  const auto life = lives_.find(node);
+  if (life == lives_.end()) return;
+  life->second.points.clear();
+  life->second.stride = 1;
+  life->second.skipped = 0;
+  for (const TrackPoint& point : points) follow(life->second, point);
 }
 
 void Chronicle::coarsen() {
@@ -105,8 +116,8 @@ Json Chronicle::tracks() const {
   for (const auto& [name, life] : lives_) {
     if (life.points.empty()) continue;
     Json points = Json::array();
-    for (const Point& p : life.points)
-      points.push_back({rounded(p.t, 1e3), rounded(p.x, 1e3), rounded(p.y, 1e3), rounded(p.z, 1e3)});
+    for (const TrackPoint& p : life.points)
+      points.push_back({rounded(p.time_s, 1e3), rounded(p.x, 1e3), rounded(p.y, 1e3), rounded(p.z, 1e3)});
     tracks.push_back({{"robot", name}, {"points", std::move(points)}});
   }
   return {{"tracks", std::move(tracks)}};

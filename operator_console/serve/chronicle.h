@@ -8,6 +8,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "operator_console/robot_tracks.h"
 #include "shoal/mapping/queries.h"
 
 namespace shoal::console {
@@ -19,6 +20,8 @@ class Chronicle {
   /// A node as its last heartbeat told it.
   /// @param class_bytes  what it has sent by class of traffic, when that is known; else all counts as "sent".
   void hear(const mapping::NodeStatus& node, const std::map<std::string, int64_t>& class_bytes = {});
+  /// Where a node that was heard has been, better known than from what it told; ascending by time.
+  void track(const std::string& node, const std::vector<TrackPoint>& points);
   /// The legend as it is at a time: new labels and new names are events.
   void hearLabels(double time_s, const nlohmann::ordered_json& labels);
   /// Something else worth telling. @param kind  "joined", "landed", "label", "alarm", ...
@@ -32,15 +35,12 @@ class Chronicle {
   nlohmann::ordered_json events() const;
 
  private:
-  struct Point {
-    double t, x, y, z;
-  };
   struct Life {
     std::string phase, agreement;
     double heard_s = 0;
     int64_t conflicts = 0, rejected = 0;
     int64_t budget = 0;
-    std::vector<Point> points;
+    std::vector<TrackPoint> points;
     size_t stride = 1, skipped = 0;
     std::map<std::string, int64_t> sent;                     // last told, by class
     std::map<int64_t, std::map<std::string, int64_t>> bins;  // by time / bin
@@ -50,6 +50,7 @@ class Chronicle {
     std::string kind, text;
   };
 
+  static void follow(Life& life, const TrackPoint& point);
   void coarsen();
 
   std::map<std::string, Life> lives_;

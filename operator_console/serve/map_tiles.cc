@@ -27,16 +27,17 @@ Narrow clamped(Wide value) {
 }
 
 // Cells of a column come from low to high.
-void put(Tile& tile, size_t at, const mapping::GlobalCell& c, double base_s) {
+void put(Tile& tile, size_t at, const mapping::GlobalCell& c, uint8_t surprise, double base_s) {
   if (tile.label[at] != kNobody) {
     tile.lower.push_back({static_cast<uint16_t>(at), tile.height[at], tile.label[at], tile.seen[at],
-                          tile.robot[at], tile.certainty[at]});
+                          tile.robot[at], tile.certainty[at], tile.surprise[at]});
   }
   tile.label[at] = number(c.label);
   tile.seen[at] = clamped<int32_t>(std::floor((c.seen.seconds() - base_s) * 10));
   tile.robot[at] = clamped<int16_t>(number(c.robot));
   tile.height[at] = clamped<int16_t>(c.cell.z);
   tile.certainty[at] = static_cast<uint8_t>(std::lround(std::clamp(c.certainty, 0.f, 1.f) * 255));
+  tile.surprise[at] = surprise;
 }
 
 using TileKey = std::pair<int32_t, int32_t>;
@@ -48,10 +49,11 @@ class Drawing {
 
   Tile& begin(const TileKey& key, const Tile& from) { return *(tiles_[key] = std::make_shared<Tile>(from)); }
 
-  void put(const std::vector<mapping::GlobalCell>& cells) {
+  void put(const std::vector<mapping::GlobalCell>& cells, std::span<const uint8_t> surprises) {
     TileKey last{};
     Tile* tile = nullptr;
-    for (const mapping::GlobalCell& c : cells) {
+    for (size_t n = 0; n < cells.size(); ++n) {
+      const mapping::GlobalCell& c = cells[n];
       const TileKey key(tileIndex(c.cell.x), tileIndex(c.cell.y));
       if (tile == nullptr || key != last) {
         auto& slot = tiles_[key];
@@ -61,7 +63,7 @@ class Drawing {
       }
       const auto i = static_cast<size_t>(c.cell.x - key.first * kTileSide);
       const auto j = static_cast<size_t>(c.cell.y - key.second * kTileSide);
-      console::put(*tile, j * kTileSide + i, c, base_s_);
+      console::put(*tile, j * kTileSide + i, c, surprises.empty() ? uint8_t{0} : surprises[n], base_s_);
     }
   }
 
@@ -96,6 +98,7 @@ void clear(Tile& tile, const mapping::BrickColumn& column, const TileKey& key) {
     tile.robot[at] = nothing.robot[at];
     tile.height[at] = nothing.height[at];
     tile.certainty[at] = nothing.certainty[at];
+    tile.surprise[at] = nothing.surprise[at];
   }
   std::erase_if(tile.lower, [&is_in](const LowerCell& c) { return is_in(c.place); });
 }
@@ -114,16 +117,17 @@ Tile Tile::empty() {
   return tile;
 }
 
-TileMap tilesOf(const mapping::GlobalMap& map, double base_s, uint64_t sequence, const TileMap& before) {
+TileMap tilesOf(const mapping::GlobalMap& map, std::span<const uint8_t> surprises, double base_s,
+                uint64_t sequence, const TileMap& before) {
   Drawing drawing(base_s);
   for (const auto& [key, was] : before) drawing.begin(key, Tile::empty());
-  drawing.put(map.cells);
+  drawing.put(map.cells, surprises);
   return drawing.settled(sequence, before);
 }
 
 TileMap changedTiles(const mapping::MapChange& change, double base_s, uint64_t sequence,
                      const TileMap& before) {
-  if (change.is_whole) return tilesOf(change.part, base_s, sequence, before);
+  if (change.is_whole) return tilesOf(change.part, change.surprises, base_s, sequence, before);
   static_assert(kTileSide == 2 * mapping::kBrickEdge);
   Drawing drawing(base_s);
   std::map<TileKey, Tile*> begun;
@@ -136,7 +140,7 @@ TileMap changedTiles(const mapping::MapChange& change, double base_s, uint64_t s
     }
     clear(*tile, column, key);
   }
-  drawing.put(change.part.cells);
+  drawing.put(change.part.cells, change.surprises);
   return drawing.settled(sequence, before);
 }
 
@@ -165,13 +169,14 @@ std::string encodeTiles(const TileMap& tiles, uint64_t since, const TileHeader& 
     append(bytes, tile.robot);
     append(bytes, tile.height);
     append(bytes, tile.certainty);
+    append(bytes, tile.surprise);
     for (const LowerCell& c : lower) append(bytes, c.label);
     for (const LowerCell& c : lower) append(bytes, c.seen);
     for (const LowerCell& c : lower) append(bytes, c.place);
     for (const LowerCell& c : lower) append(bytes, c.height);
     for (const LowerCell& c : lower) append(bytes, c.robot);
     for (const LowerCell& c : lower) append(bytes, c.certainty);
-    bytes.append(lower.size(), '\0');
+    for (const LowerCell& c : lower) append(bytes, c.surprise);
   }
   return bytes;
 }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,7 +24,7 @@ struct LowerCell {
   int16_t height;  ///< z index, clamped
   int32_t label, seen;
   int16_t robot;
-  uint8_t certainty;
+  uint8_t certainty, surprise;
   bool operator==(const LowerCell&) const = default;
 };
 
@@ -35,6 +36,7 @@ struct Tile {
   std::array<int16_t, kTileColumns> robot;      ///< number of the robot that saw it last
   std::array<int16_t, kTileColumns> height;     ///< z index, clamped
   std::array<uint8_t, kTileColumns> certainty;  ///< [0, 1] in steps of 1/255
+  std::array<uint8_t, kTileColumns> surprise;   ///< in steps of 1/8; 0: no more than usual
   std::vector<LowerCell> lower;                 ///< ascending by place, then height
 
   static Tile empty();
@@ -51,9 +53,11 @@ using TileMap = std::map<std::pair<int32_t, int32_t>, VersionedTile>;
 
 /// The tiles of a map. Those that are as in `before` are shared with it and keep their sequence; those that
 /// are gone stay as empty ones, so that whoever has `before` can be told.
+/// @param surprises  of the map's cells, as mapping::ToldSurprises::of(); or empty.
 /// @param base_s  mission time that `seen` counts from.
 /// Cost: O(cells).
-TileMap tilesOf(const mapping::GlobalMap& map, double base_s, uint64_t sequence, const TileMap& before);
+TileMap tilesOf(const mapping::GlobalMap& map, std::span<const uint8_t> surprises, double base_s,
+                uint64_t sequence, const TileMap& before);
 
 /// The tiles after a change of the map, which tells of whole columns of bricks; others are shared with
 /// `before`. Cost: O(tiles), O(cells) for those that are told.
@@ -69,8 +73,8 @@ struct TileHeader {
 /// Tiles newer than `since` as bytes, little-endian:
 ///   "SHT2", u32 number of tiles, f64 cell size (m), f64 base (s), u64 sequence, u64 since, u64 life, then a
 ///   tile: i32 x, i32 y, u32 number n of lower cells, u32 0, label i32[1024], seen i32[1024], robot
-///   i16[1024], height i16[1024], certainty u8[1024], and of the lower cells label i32[n], seen i32[n], place
-///   u16[n], height i16[n], robot i16[n], certainty u8[n], u8[n] 0
+///   i16[1024], height i16[1024], certainty u8[1024], surprise u8[1024], and of the lower cells label i32[n],
+///   seen i32[n], place u16[n], height i16[n], robot i16[n], certainty u8[n], surprise u8[n]
 /// @param with_lower  without: n is 0.
 std::string encodeTiles(const TileMap& tiles, uint64_t since, const TileHeader& header, bool with_lower);
 

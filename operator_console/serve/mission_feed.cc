@@ -11,10 +11,11 @@
 
 #include "fusion_node/query_server.h"
 #include "operator_console/label_pictures.h"
+#include "operator_console/message_log.h"
 #include "operator_console/recorded_mission.h"
 #include "operator_console/render.h"
-#include "shoal/comms/log_reader.h"
 #include "shoal/mapping/edits_file.h"
+#include "shoal/mapping/questions.h"
 #include "shoal/wire/heartbeat_codec.h"
 
 namespace shoal::console {
@@ -45,10 +46,10 @@ Json colored(Json answer) {
 }
 
 // First and last mission time of the heartbeats of a recording.
-std::pair<double, double> spanOf(const std::string& path) {
+std::pair<double, double> spanOf(const std::string& path, const std::string& key_file) {
   double first = 0, last = 0;
   bool any = false;
-  comms::LogReader log(path);
+  MessageLog log(path, key_file);
   while (const auto event = log.next()) {
     const auto header = wire::peek(event->packet.bytes);
     if (!header || header->kind != wire::MessageKind::kHeartbeat) continue;
@@ -162,13 +163,14 @@ void showPictures(Moment& moment, mapping::LabelPictures pictures, const Moment*
 }  // namespace
 
 std::shared_ptr<Moment> MissionFeed::momentOf(const mapping::MissionView& view,
+                                              const mapping::ToldSurprises& surprises, Json labels,
                                               mapping::LabelPictures pictures, double time_s,
                                               const Moment* before) {
   auto moment = begun(time_s, view.cell_size_m, view.map.cells, before);
-  moment->tiles =
-      tilesOf(view.map, moment->base_s, moment->sequence, before != nullptr ? before->tiles : TileMap());
+  moment->tiles = tilesOf(view.map, surprises.of(view.map.cells), moment->base_s, moment->sequence,
+                          before != nullptr ? before->tiles : TileMap());
   moment->status = mapping::statusAnswer(view);
-  moment->labels = colored(mapping::labelsAnswer(view));
+  moment->labels = colored(std::move(labels));
   showPictures(*moment, std::move(pictures), before);
   return moment;
 }
@@ -284,13 +286,18 @@ void MissionFeed::lookAtFiles() {
   }
   if (!where_.run.empty()) {
     const mapping::MissionView view = viewOfRun(where_.run);
+    const auto tracks = tracksOf(where_);
     const auto last = now();
-    auto moment = momentOf(view, picturesOfRun(where_.run), timeOf(view), last.get());
+    const bool has_library = std::filesystem::exists(where_.run + "/library.json");
+    auto moment = momentOf(view, surprisesOfRun(where_.run, world::Grid(view.cell_size_m)),
+                           has_library ? ask(where_, {{"query", "labels"}}) : mapping::labelsAnswer(view),
+                           picturesOfRun(where_.run), timeOf(view), last.get());
     {
       const std::lock_guard lock(mutex_);
       moments_ = {std::move(moment)};
       chronicle_ = {};
       for (const mapping::NodeStatus& node : view.nodes) chronicle_.hear(node);
+      for (const auto& [robot, points] : tracks) chronicle_.track(robot, points);
       chronicle_.hearLabels(moments_.back()->time_s, moments_.back()->labels);
     }
     on_change_();
@@ -303,7 +310,7 @@ void MissionFeed::lookAtFiles() {
 // Reads the recording from its beginning, with what was decided since, and keeps its map at even times.
 void MissionFeed::readHistory() {
   const std::string path = recordingOrNone(where_);
-  const auto [first_s, last_s] = spanOf(path);
+  const auto [first_s, last_s] = spanOf(path, where_.key);
   const double step_s = std::max((last_s - first_s) / static_cast<double>(kHistoryMoments), 1e-3);
   const matching::MatcherOptions matcher = matcherOf(where_);
   std::vector<std::shared_ptr<const Moment>> moments;
@@ -314,8 +321,13 @@ void MissionFeed::readHistory() {
     for (const mapping::Edit& edit : edits) state.apply(mapping::pieceOf(edit));
     state.refreshMap();
     const mapping::MissionView view = state.view();
-    moments.push_back(momentOf(view, mapping::picturesOfLabels(view.map, state.beliefs(), kMostPictures),
-                               time_s, moments.empty() ? nullptr : moments.back().get()));
+    mapping::ToldSurprises surprises;
+    surprises.update(state.beliefs());
+    Json labels = mapping::labelsAnswer(view);
+    mapping::addLibraryNames(labels["labels"], view.map, state.beliefs());
+    moments.push_back(momentOf(view, surprises, std::move(labels),
+                               mapping::picturesOfLabels(view.map, state.beliefs(), kMostPictures), time_s,
+                               moments.empty() ? nullptr : moments.back().get()));
     chronicle.hearLabels(time_s, moments.back()->labels);
   };
   bool is_first = true;
@@ -336,7 +348,7 @@ void MissionFeed::readHistory() {
     keep(state, header.time.seconds());
     due_s = header.time.seconds() + step_s;
   };
-  const RecordedMission recorded = readRecording(path, matcher, on_message);
+  const RecordedMission recorded = readRecording(path, matcher, on_message, {}, where_.key);
   keep(recorded.state, last_s);
   {
     const std::lock_guard lock(mutex_);

@@ -67,7 +67,8 @@ class MissionFeed {
   void lookAtFiles();
   void readHistory();
   void lookAtNode(const nlohmann::ordered_json& status, double time_s);
-  std::shared_ptr<Moment> momentOf(const mapping::MissionView& view, mapping::LabelPictures pictures,
+  std::shared_ptr<Moment> momentOf(const mapping::MissionView& view, const mapping::ToldSurprises& surprises,
+                                   nlohmann::ordered_json labels, mapping::LabelPictures pictures,
                                    double time_s, const Moment* before);
   std::shared_ptr<Moment> begun(double time_s, double cell_size_m,
                                 const std::vector<mapping::GlobalCell>& cells, const Moment* before);

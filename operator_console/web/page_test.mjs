@@ -62,7 +62,7 @@ try {
   await until(async () => !(await text("#legend")).includes("reef & sand"), "the name is taken back");
 
   // Layers by key, and time.
-  for (const [key, layer] of [["2", "certainty"], ["3", "age"], ["4", "robot"], ["5", "coverage"], ["6", "truth"], ["1", "label"]]) {
+  for (const [key, layer] of [["2", "certainty"], ["3", "surprise"], ["4", "age"], ["5", "robot"], ["6", "coverage"], ["7", "truth"], ["1", "label"]]) {
     await page.keyboard.press(key);
     assert.equal(await page.locator("#layers [aria-checked=true]").getAttribute("data-layer"), layer);
     if (layer === "truth") {
@@ -74,17 +74,27 @@ try {
         return false;
       }, colors), "the truth is drawn");
     }
+    if (layer === "surprise") {
+      assert.match(await text("#ramp"), /as usual[^]*surprised: 1.5[^]*6 and more/);
+      await until(async () => (await page.locator("#ramp .places button").count()) > 0, "the strangest places are told");
+      const most = Number(await page.locator("#ramp .places button").first().innerText());
+      const known = await page.evaluate(() => Math.max(...[...window.shoal.map.tiles.values()].flatMap((t) => [...t.surprise, ...t.lower.surprise])) / 8);
+      assert.ok(most >= 2 && Math.abs(known - most) < 0.06, `the strangest is the map's most: ${most}, ${known}`);
+      await shot("surprise_all");
+      await page.locator("#ramp .places button").first().click();
+      await until(async () => /it surprised: [2-7]\.\d/.test(await text("#inspector")), "the place says how much it surprised");
+    }
     if (layer !== "label") await shot(layer);
+    if (layer === "surprise") { await page.keyboard.press("Escape"); await page.keyboard.press("0"); }
   }
 
   // In 3-D, and flat again at the same place.
   await page.keyboard.press("Escape"); // the chosen label fades all others
   const fetched = [];
-  page.on("request", (request) => fetched.push(new URL(request.url()).pathname + new URL(request.url()).search));
+  page.on("request", (request) => fetched.push(new URL(request.url()).pathname));
   await page.keyboard.press("d");
   await page.waitForFunction(() => window.shoal.depth?.drawn > 0);
   assert.ok(fetched.includes("/view3d.js"), "3-D is fetched when it is wanted");
-  await until(async () => fetched.some((path) => path.includes("cells=all")), "3-D asks for what lies below");
   await page.waitForTimeout(300);
   assert.equal(await page.evaluate(() => window.shoal.depth.drawn), await cells(), "3-D has every cell");
   const boxes = await page.evaluate(() => { // tops are in the legend's colours
@@ -163,6 +173,21 @@ try {
   await until(async () => (await other.locator("#phase").innerText()) === "as it was", "a link goes to its time");
   assert.ok(await other.locator("#undo").isHidden(), "no key, no undo");
   await other.close();
+
+  // What came named from the library says so. (tests/system/serve_test.py flies a mission with one.)
+  const marked = await (await browser.newContext()).newPage();
+  await marked.route("**/api/labels*", async (route) => {
+    const response = await route.fetch(), answer = await response.json();
+    answer.labels.forEach((l) => (l.library = []));
+    answer.labels.reduce((a, b) => (a.area_m2 > b.area_m2 ? a : b)).library = ["sand & <b>silt</b>"];
+    await route.fulfill({ response, json: answer });
+  });
+  await marked.goto(url);
+  await marked.waitForSelector("#legend .library");
+  assert.equal(await marked.locator("#legend .library").count(), 1);
+  assert.match(await marked.locator("#legend .label").first().locator(".library").getAttribute("title"), /knows it as “sand & <b>silt<\/b>”/);
+  if (folder) await marked.screenshot({ path: `${folder}/library.png` });
+  await marked.close();
 
   // It survives a reload, with its key.
   await page.reload();

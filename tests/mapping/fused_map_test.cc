@@ -7,6 +7,8 @@
 
 #include "plain_fusion.h"
 #include "shoal/mapping/fusion.h"
+#include "shoal/mapping/surprises.h"
+#include "shoal/mapping/told_surprises.h"
 #include "shoal/random.h"
 
 namespace shoal::mapping {
@@ -74,7 +76,8 @@ class Mission {
         piece.key = {robot, PieceKind::kCertainty, brick()};
         CertaintyPart part;
         for (const world::CellIndex& cell : cells(piece.key.index))
-          part.cells.push_back({cell, static_cast<uint8_t>(below(kCertaintySteps + 1))});
+          part.cells.push_back({cell, static_cast<uint8_t>(below(kCertaintySteps + 1)),
+                                static_cast<uint8_t>(below(3) == 0 ? kLeastSurpriseSteps + below(50) : 0)});
         piece.content = part;
         break;
       }
@@ -154,6 +157,36 @@ TEST(FusedMapTest, EqualsThePlainFusionOfWhateverStateItHasGrownTo) {
     fused.update(store, other);
     expectEqual(fused, fusePlainly(store, other));
   }
+}
+
+// Told in whatever steps, surprises by place are those of the whole map, and hashes show what changed.
+TEST(ToldSurprisesTest, AreThoseOfTheWholeMap) {
+  size_t found = 0;
+  for (uint64_t seed = 1; seed <= 6; ++seed) {
+    SCOPED_TRACE(seed);
+    Mission mission(seed);
+    Random random(seed, 1);
+    BeliefStore store;
+    ToldSurprises grown;
+    for (int step = 0; step < 40; ++step) {
+      for (uint64_t n = random.below(12); n > 0; --n) store.apply(mission.next());
+      grown.update(store);
+      const GlobalMap map = fusePlainly(store, {});
+      const std::vector<uint8_t> steps = grown.of(map.cells);
+      ASSERT_EQ(steps.size(), map.cells.size());
+      std::vector<SurprisingCell> told;
+      for (size_t i = 0; i < steps.size(); ++i)
+        if (steps[i] > 0)
+          told.push_back({map.cells[i], static_cast<float>(steps[i]) / kSurpriseStepsPerUnit});
+      ASSERT_EQ(told, surprisesOf(map, store)) << "step " << step;
+      found += told.size();
+      ToldSurprises anew;
+      anew.update(store);
+      for (int32_t x = -2; x <= 2; ++x)
+        for (int32_t y = -2; y <= 2; ++y) ASSERT_EQ(grown.hashOf({x, y}), anew.hashOf({x, y}));
+    }
+  }
+  EXPECT_GT(found, 100u);
 }
 
 // 255 robots tell of one tile at 256 times each: as many as there is room for.

@@ -23,6 +23,7 @@
 #include "plain_fusion.h"
 #include "shoal/mapping/fused_map.h"
 #include "shoal/mapping/map_changes.h"
+#include "shoal/mapping/told_surprises.h"
 #include "shoal/random.h"
 
 namespace {
@@ -258,10 +259,16 @@ void OneMoreBrickTold(benchmark::State& state) {
   BeliefStore store = millionCells();
   FusedMap fused;
   MapChanges changes;
+  ToldSurprises surprises;
   const auto tell = [&](const std::string& has) {
     fused.update(store, matching::usualMatcher());
-    const MapInColumns map{1, fused.digest(), fused.labels(), fused.columnHashes(),
-                           [&fused](const auto& columns) { return fused.cellsIn(columns); }};
+    surprises.update(store);
+    const MapInColumns map{1,
+                           fused.digest(),
+                           fused.labels(),
+                           fused.columnHashes(),
+                           [&fused](const auto& columns) { return fused.cellsIn(columns); },
+                           [&surprises](const auto& cells) { return surprises.of(cells); }};
     return changes.answer(map, {{"query", "map"}, {"has", has}});
   };
   std::string has = tell("").at("digest");

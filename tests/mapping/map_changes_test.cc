@@ -63,15 +63,27 @@ struct Columns {
     return {static_cast<int32_t>(std::floor(c.cell.x / 16.)),
             static_cast<int32_t>(std::floor(c.cell.y / 16.))};
   }
+  static uint8_t surpriseOf(const GlobalCell& c) {  // anything that the cell decides
+    return c.seen.us % 3 == 0 ? static_cast<uint8_t>(12 + c.seen.us / 1000 % 50) : uint8_t{0};
+  }
   static uint64_t hashOf(const GlobalCell& c) {
     return cellHash(c.cell, c.robot, c.seen, c.certainty) * labelFactor(c.label);
   }
   MapInColumns map() const {
-    return {view.cell_size_m, view.map_digest, view.map.labels, hashes, [this](const auto& columns) {
+    return {view.cell_size_m,
+            view.map_digest,
+            view.map.labels,
+            hashes,
+            [this](const auto& columns) {
               std::vector<GlobalCell> cells;
               for (const GlobalCell& c : view.map.cells)
                 if (columns.contains(columnOf(c))) cells.push_back(c);
               return cells;
+            },
+            [](std::span<const GlobalCell> cells) {
+              std::vector<uint8_t> steps;
+              for (const GlobalCell& c : cells) steps.push_back(surpriseOf(c));
+              return steps;
             }};
   }
   const MissionView& view;
@@ -87,7 +99,12 @@ struct Holder {
     const MapChange change = readChange(answer, "test");
     if (change.is_whole) columns.clear();
     for (const BrickColumn& column : change.columns) columns.erase(column);
-    for (const GlobalCell& c : change.part.cells) columns[Columns::columnOf(c)].push_back(c);
+    ASSERT_EQ(change.surprises.size(), change.part.cells.size());
+    for (size_t i = 0; i < change.part.cells.size(); ++i) {
+      const GlobalCell& c = change.part.cells[i];
+      ASSERT_EQ(change.surprises[i], Columns::surpriseOf(c));
+      columns[Columns::columnOf(c)].push_back(c);
+    }
     digest = change.digest;
     labels = change.part.labels;
   }
@@ -172,6 +189,12 @@ TEST(MapChangesTest, AnAnswerWithoutADigestIsWhole) {
   EXPECT_EQ(change.digest, "");
   EXPECT_EQ(change.part.cells, toldWhole(view).cells);
   answer["columns"] = Json::parse("[[99, 99]]");
+  EXPECT_THROW(readChange(answer, "test"), std::runtime_error);
+  answer.erase("columns");
+  EXPECT_TRUE(change.surprises.empty());
+  answer["surprises"] = Json::array({Json::array({1, 20})});
+  EXPECT_EQ(readChange(answer, "test").surprises.at(1), 20);
+  answer["surprises"] = Json::array({Json::array({100000, 20})});
   EXPECT_THROW(readChange(answer, "test"), std::runtime_error);
 }
 

@@ -31,6 +31,8 @@ CELLS = {(100 + i, -50 + j, 0): (SAND, 0, 10.0 + i, 0.25 * i + 0.125) for i in r
 CELLS[102, -48, 0] = CORAL, 1, 20.0, 0.5
 CELLS[100, -50, 1] = CORAL, 1, 21.5, 0.75
 ORIGIN = (-17.53, 177.21)
+# Seconds and metres; one place is no track.
+TRACKS = {"R00": [(1.0, 50.0, -25.0, 5.0), (2.0, 51.0, -25.0, 5.5), (3.0, 51.0, -24.0, 4.25)], "R01": [(1.0, 49.0, -23.0, 4.0)]}
 
 
 def run(*command, status=0, **options):
@@ -88,6 +90,9 @@ class Exports(unittest.TestCase):
             "mission_id": 7, "cell_size_m": SIZE, "digest": {"state": "00" * 8, "map": "00" * 8},
             "nodes": [{"name": "R00", "heard_s": 30.5, "position_m": [50.0, -25.0, 3.0], **node},
                       {"name": "R01", "heard_s": 31.25, "position_m": [51.0, -24.0, 3.0], **node}]}))
+        for robot, places in TRACKS.items():
+            os.makedirs(os.path.join(cls.run_dir, "robots", robot))
+            write(f"robots/{robot}/poses.txt", "".join(f"{t:.6f} {x} {y} {z} 1 0 0 0\n" for t, x, y, z in places))
         os.mkdir(os.path.join(cls.run_dir, "pictures"))
         write("pictures/pictures.json", json.dumps({"labels": [{"label": CORAL, "pictures": [
             {"robot": "R01", "topic": 7, "example": 0, "cell": [102, -48, 0], "seen_s": 20.0, "num_layers": 2, "layers": ["00"]}]}]}))
@@ -203,7 +208,14 @@ class Exports(unittest.TestCase):
             read = run("ogr2ogr", "-f", "GeoJSON", "/vsistdout/", path, name).stdout
             layers[name.split(" (3D")[0]] = json.loads(read)["features"]
         self.assertEqual({name: len(found) for name, found in layers.items()},
-                         {f"label {SAND}": 1, f"{NAMES[CORAL]} ({CORAL})": 2, "robots": 2})
+                         {f"label {SAND}": 1, f"{NAMES[CORAL]} ({CORAL})": 2, "robots": 2, "tracks": 1})
+        track = layers["tracks"][0]
+        self.assertEqual((track["properties"]["Name"], track["geometry"]["type"]), ("R00", "LineString"))
+        for (lon, lat, height), (_, x, y, z) in zip(track["geometry"]["coordinates"], TRACKS["R00"], strict=True):
+            self.assertAlmostEqual(lon, on_earth(x, y, 90)[0], delta=2e-8)
+            self.assertAlmostEqual(lat, on_earth(x, y, 90)[1], delta=2e-8)
+            self.assertAlmostEqual(height, z, delta=1e-3)
+        self.assertIn("altitudeMode", track["properties"])
         ring = layers[f"label {SAND}"][0]
         polygons = ring["geometry"]["coordinates"] if ring["geometry"]["type"] == "MultiPolygon" else \
             [g["coordinates"] for g in ring["geometry"]["geometries"]] if "geometries" in ring["geometry"] else [ring["geometry"]["coordinates"]]

@@ -22,7 +22,7 @@ struct Changing {
   // What a node would tell of it.
   mapping::MapChange change(int count) {
     std::uniform_int_distribution<int32_t> place(-70, 70), any(0, 99);
-    mapping::MapChange change{.digest = "", .is_whole = false, .columns = {}, .part = {}};
+    mapping::MapChange change{.digest = "", .is_whole = false, .columns = {}, .part = {}, .surprises = {}};
     for (int n = 0; n < count; ++n) {
       const world::CellIndex cell{place(random), place(random), any(random) % 3 - 1};
       change.columns.emplace(cell.x >> 4, cell.y >> 4);
@@ -35,7 +35,16 @@ struct Changing {
     }
     for (const auto& [index, cell] : cells)
       if (change.columns.contains({index.x >> 4, index.y >> 4})) change.part.cells.push_back(cell);
+    change.surprises = surprisesOf(change.part.cells);
     return change;
+  }
+  static uint8_t surpriseOf(const GlobalCell& c) {
+    return c.seen.us % 7 == 0 ? static_cast<uint8_t>(12 + c.cell.x % 10) : uint8_t{0};
+  }
+  static std::vector<uint8_t> surprisesOf(const std::vector<GlobalCell>& cells) {
+    std::vector<uint8_t> steps;
+    for (const GlobalCell& c : cells) steps.push_back(surpriseOf(c));
+    return steps;
   }
   mapping::GlobalMap map() const {
     mapping::GlobalMap map;
@@ -51,7 +60,7 @@ TEST(MapTilesTest, ChangesAddUpToTheWholeMap) {
   for (uint64_t turn = 1; turn <= 60; ++turn) {
     SCOPED_TRACE(turn);
     told = changedTiles(changing.change(turn == 1 ? 4000 : static_cast<int>(turn % 5) * 4), 3, turn, told);
-    whole = tilesOf(changing.map(), 3, turn, whole);
+    whole = tilesOf(changing.map(), Changing::surprisesOf(changing.map().cells), 3, turn, whole);
     ASSERT_EQ(told.size(), whole.size());
     for (const auto& [key, is] : whole) {
       ASSERT_EQ(*told.at(key).tile, *is.tile) << key.first << ' ' << key.second;
@@ -64,7 +73,7 @@ TEST(MapTilesTest, ChangesAddUpToTheWholeMap) {
 TEST(MapTilesTest, HoldEveryCellOnce) {
   Changing changing;
   changing.change(5000);
-  const TileMap tiles = tilesOf(changing.map(), 0, 1, {});
+  const TileMap tiles = tilesOf(changing.map(), Changing::surprisesOf(changing.map().cells), 0, 1, {});
   size_t held = 0, below = 0;
   for (const auto& [key, versioned] : tiles) {
     const Tile& tile = *versioned.tile;
@@ -76,6 +85,7 @@ TEST(MapTilesTest, HoldEveryCellOnce) {
       if (tile.label[at] < 0) continue;
       ++held;
       EXPECT_EQ(cellAt(at, tile.height[at]).label, world::GlobalLabel{tile.label[at]});
+      EXPECT_EQ(Changing::surpriseOf(cellAt(at, tile.height[at])), tile.surprise[at]);
     }
     for (const LowerCell& c : tile.lower) {
       ++below;
@@ -83,6 +93,7 @@ TEST(MapTilesTest, HoldEveryCellOnce) {
       EXPECT_LT(c.height, tile.height[c.place]);
       EXPECT_EQ(cell.label, world::GlobalLabel{c.label});
       EXPECT_EQ(cell.robot, world::RobotId{c.robot});
+      EXPECT_EQ(Changing::surpriseOf(cell), c.surprise);
       EXPECT_EQ(cell.seen.us, int64_t{c.seen} * 100'000);
     }
   }
@@ -91,7 +102,7 @@ TEST(MapTilesTest, HoldEveryCellOnce) {
 
   // As bytes they take what is documented, and lower cells only when wanted.
   const auto sizeOf = [&](bool with_lower) { return encodeTiles(tiles, 0, {}, with_lower).size(); };
-  EXPECT_EQ(sizeOf(false), 48 + tiles.size() * (16 + 1024 * 13));
+  EXPECT_EQ(sizeOf(false), 48 + tiles.size() * (16 + 1024 * 14));
   EXPECT_EQ(sizeOf(true), sizeOf(false) + 16 * below);
   uint32_t magic = 0;
   std::memcpy(&magic, encodeTiles(tiles, 1, {}, true).data() + 4, 4);

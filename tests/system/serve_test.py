@@ -4,7 +4,9 @@
 
 Usage: serve_test.py BIN_DIR DOCS_DIR [unittest arguments], inside a network namespace of its own.
 """
+import base64
 import gzip
+import hashlib
 import http.client
 import io
 import json
@@ -26,7 +28,7 @@ import jsonschema
 
 BIN, DOCS = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
 CONSOLE = os.path.join(BIN, "operator_console")
-TILE, LOWER = 16 + 1024 * 13, 16
+TILE, LOWER = 16 + 1024 * 14, 16
 
 
 def schema(name):
@@ -47,7 +49,7 @@ class Server:
     def __init__(self, *arguments):
         self.process = subprocess.Popen([CONSOLE, "serve", "--port", "0", "--json", *arguments], stdout=subprocess.PIPE)
         said = json.loads(self.process.stdout.readline())
-        self.port, self.token, self.url = said["port"], said["token"], said["url"]
+        self.port, self.token, self.url, self.foxglove = said["port"], said["token"], said["url"], said.get("foxglove")
 
     def __enter__(self):
         return self
@@ -91,19 +93,101 @@ def tiles(content):
     """What /api/map says as {(x, y): (label, robot)} from above, and the header."""
     magic, count, cell_size, base, sequence, since, life = struct.unpack_from("<4sIddQQQ", content)
     assert magic == b"SHT2", magic
-    cells, at, num_lower = {}, 48, 0
+    cells, at, num_lower, surprises = {}, 48, 0, {}
     for _ in range(count):
         x, y, lower, zero = struct.unpack_from("<iiII", content, at)
         assert zero == 0
         label = struct.unpack_from("<1024i", content, at + 16)
         robot = struct.unpack_from("<1024h", content, at + 16 + 8192)
+        surprise = content[at + 16 + 13 * 1024:at + 16 + 14 * 1024]
         for i in range(1024):
             if label[i] >= 0:
                 cells[32 * x + i % 32, 32 * y + i // 32] = label[i], robot[i]
+                if surprise[i] > 0:
+                    surprises[32 * x + i % 32, 32 * y + i // 32] = surprise[i] / 8
         at += TILE + lower * LOWER
         num_lower += lower
     assert at == len(content), (at, len(content))
-    return cells, {"cell_size": cell_size, "sequence": sequence, "since": since, "life": life, "count": count, "lower": num_lower}
+    return cells, {"cell_size": cell_size, "sequence": sequence, "since": since, "life": life, "count": count, "lower": num_lower, "surprises": surprises}
+
+
+class WebSocket:
+    """A client as Foxglove is one, written from RFC 6455 and the protocol's own page."""
+
+    def __init__(self, url, subprotocol="foxglove.websocket.v1", origin=None, host=None):
+        address = url.removeprefix("ws://")
+        self.socket = socket.create_connection((address.split(":")[0], int(address.split(":")[1])), timeout=30)
+        key = base64.b64encode(os.urandom(16)).decode()
+        lines = ["GET / HTTP/1.1", f"Host: {host or address}", "Upgrade: websocket", "Connection: Upgrade", f"Sec-WebSocket-Key: {key}",
+                 "Sec-WebSocket-Version: 13"]
+        if subprotocol:
+            lines.append(f"Sec-WebSocket-Protocol: {subprotocol}")
+        if origin:
+            lines.append(f"Origin: {origin}")
+        self.socket.sendall(("\r\n".join(lines) + "\r\n\r\n").encode())
+        self.file = self.socket.makefile("rb")
+        self.status = int(self.file.readline().split()[1])
+        self.headers = {}
+        while (line := self.file.readline().strip()):
+            name, value = line.decode().split(": ", 1)
+            self.headers[name.lower()] = value
+        if self.status == 101:
+            digest = hashlib.sha1((key + "258EAFA5-E914-47DA-95CA-C5AB0DC85B11").encode()).digest()
+            assert self.headers["sec-websocket-accept"] == base64.b64encode(digest).decode()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.file.close()
+        self.socket.close()
+
+    def send(self, content, opcode=1, masked=True):
+        content = content.encode() if isinstance(content, str) else content
+        size = len(content)
+        mask = os.urandom(4) if masked else b""
+        head = bytes([0x80 | opcode])
+        flag = 0x80 if masked else 0
+        head += bytes([flag | size]) if size < 126 else bytes([flag | 126]) + struct.pack(">H", size) if size < 65536 else \
+            bytes([flag | 127]) + struct.pack(">Q", size)
+        self.socket.sendall(head + mask + (bytes(c ^ mask[i % 4] for i, c in enumerate(content)) if masked else content))
+
+    def receive(self):
+        """The next message: (opcode, content); None when the server has hung up."""
+        opcode, content = None, b""
+        while True:
+            try:
+                head = self.file.read(2)
+            except ConnectionError:
+                return None
+            if len(head) < 2:
+                return None
+            size = head[1] & 127
+            if size == 126:
+                size, = struct.unpack(">H", self.file.read(2))
+            elif size == 127:
+                size, = struct.unpack(">Q", self.file.read(8))
+            part = self.file.read(size)
+            if head[0] & 15 == 8:
+                return None
+            if head[0] & 15 == 9:
+                self.send(part, 10)
+                continue
+            opcode = opcode or head[0] & 15
+            content += part
+            if head[0] & 128:
+                return opcode, content
+
+    def said(self):
+        opcode, content = self.receive()
+        assert opcode == 1, opcode
+        return json.loads(content)
+
+    def data(self):
+        """A message of a subscription: (its number, nanoseconds, the message)."""
+        opcode, content = self.receive()
+        assert opcode == 2 and content[0] == 1, (opcode, content[:20])
+        return (*struct.unpack_from("<IQ", content, 1), json.loads(content[13:]))
 
 
 class Serve(unittest.TestCase):
@@ -113,7 +197,7 @@ class Serve(unittest.TestCase):
         cls.run_dir = os.path.join(cls.top, "run")
         command("launch", "--world", "reef:tuning", "--robots", "3", "--observations", "6", "--seed", "7", "--record",
                 "--out", cls.run_dir)
-        cls.server = Server("--run", cls.run_dir).__enter__()
+        cls.server = Server("--run", cls.run_dir, "--foxglove", "0", "--foxglove-origin", "https://app.example").__enter__()
         cls.server.settled()
 
     @classmethod
@@ -128,7 +212,8 @@ class Serve(unittest.TestCase):
         for path, arguments, name in [("status", ["status"], "status"), ("labels", ["labels"], "labels"), ("edits", ["edits"], "edits"),
                                       (f"at?x={x}&y={y}", ["at", x, y], "at"), (f"why?label={label}", ["why", str(label)], "why"),
                                       (f"area?label={label}&min_m2=2", ["area", str(label), "--min-m2", "2"], "area"),
-                                      ("node?node=R01", ["node", "R01"], "node"), ("diff?from=2&until=5", ["diff", "2", "5"], "diff")]:
+                                      ("node?node=R01", ["node", "R01"], "node"),
+                                      ("surprises?least=2", ["surprises", "--least", "2"], "surprises"), ("diff?from=2&until=5", ["diff", "2", "5"], "diff")]:
             answer = self.server.json("/api/" + path)
             jsonschema.validate(answer, schema(name))
             told = json.loads(command(*arguments, "--run", self.run_dir, "--json"))
@@ -148,6 +233,20 @@ class Serve(unittest.TestCase):
                     expected[key] = float(z), int(label), int(robot[1:])
         self.assertGreater(len(cells), 50)
         self.assertEqual(cells, {key: value[1:] for key, value in expected.items()})
+        whole = tiles(self.server.ask("/api/map?cells=all")[1])
+        self.assertEqual(whole[0], cells)
+        with open(os.path.join(self.run_dir, "global_map.csv"), encoding="utf-8") as file:
+            self.assertEqual(len(cells) + whole[1]["lower"], len(file.readlines()) - 1)
+        top = {key: value[0] for key, value in expected.items()}
+        with open(os.path.join(self.run_dir, "surprise.csv"), encoding="utf-8") as file:
+            told = {}
+            for row in file.readlines()[1:]:
+                x, y, z, _, _, _, surprise = row.split(",")
+                key = round(float(x) / size), round(float(y) / size)
+                if float(z) == top[key]:
+                    told[key] = float(surprise)
+        self.assertGreater(len(told), 3)
+        self.assertEqual(header["surprises"], told)
         nothing = tiles(self.server.ask(f"/api/map?since={header['sequence']}&life={header['life']}")[1])
         self.assertEqual(nothing[1]["count"], 0)
         stranger = tiles(self.server.ask(f"/api/map?since={header['sequence']}&life=1")[1])
@@ -250,6 +349,112 @@ class Serve(unittest.TestCase):
         with Server("--log", os.path.join(self.run_dir, "mission.lcmlog")) as other:
             self.assertFalse(other.settled()["truth"])
             self.assertEqual(other.ask("/api/classes")[0].status, 404)
+
+    def test_foxglove_looks_at_the_same_mission(self):
+        cells, header = tiles(self.server.ask("/api/map?cells=all")[1])
+        colors = {row["label"]: bytes.fromhex(row["color"][1:]) for row in self.server.json("/api/labels")["labels"]}
+        with WebSocket(self.server.foxglove) as client:
+            self.assertEqual((client.status, client.headers["sec-websocket-protocol"]), (101, "foxglove.websocket.v1"))
+            info, offer = client.said(), client.said()
+            self.assertEqual((info["op"], info["name"], offer["op"]), ("serverInfo", "Shoal", "advertise"))
+            channels = {c["topic"]: c for c in offer["channels"]}
+            self.assertEqual(list(channels), ["/map", "/tf", "/events", "/labels", "/status"])
+            self.assertEqual({c["encoding"] + c["schemaEncoding"] for c in channels.values()}, {"jsonjsonschema"})
+
+            def subscribe(number, topic):
+                client.send(json.dumps({"op": "subscribe", "subscriptions": [{"id": number, "channelId": channels[topic]["id"]}]}))
+
+            subscribe(70, "/map")
+            number, _, cloud = client.data()
+            self.assertEqual(number, 70)
+            jsonschema.validate(cloud, json.loads(channels["/map"]["schema"]))
+            points, stride = base64.b64decode(cloud["data"]), cloud["point_stride"]
+            self.assertEqual(len(points), (len(cells) + header["lower"]) * stride)
+            at = {f["name"]: f["offset"] for f in cloud["fields"]}
+            top = {}
+            for i in range(0, len(points), stride):
+                x, y, z = struct.unpack_from("<fff", points, i)
+                label, = struct.unpack_from("<i", points, i + at["label"])
+                robot, = struct.unpack_from("<H", points, i + at["robot"])
+                self.assertEqual(points[i + at["red"]:i + at["red"] + 3], colors[label])
+                key = round(x / header["cell_size"]), round(y / header["cell_size"])
+                if key not in top or z >= top[key][0]:
+                    top[key] = z, (label, robot)
+            self.assertEqual({key: value[1] for key, value in top.items()}, cells)
+            subscribe(71, "/status")
+            self.assertEqual(client.data()[2], self.server.json("/api/status"))
+            subscribe(72, "/tf")
+            seen = [client.data() for _ in range(3)]
+            self.assertEqual({s[2]["child_frame_id"] for s in seen}, {"R00", "R01", "R02"})
+            jsonschema.validate(seen[0][2], json.loads(channels["/tf"]["schema"]))
+            client.send(json.dumps({"op": "unsubscribe", "subscriptionIds": [70, 71, 72]}))
+            subscribe(73, "/events")
+            events = self.server.json("/api/events")["events"]
+            told = [client.data() for _ in events]
+            self.assertEqual([t[2]["message"] for t in told], [e["text"] for e in events])
+            for nonsense in ("{", "[]", "7", '{"op": 3}', '{"op": "subscribe"}', '{"op": "subscribe", "subscriptions": [{"id": 1, "channelId": 9}]}',
+                             '{"op": "subscribe", "subscriptions": [{"id": -1, "channelId": 1e99}]}'):
+                client.send(nonsense)
+                said = client.said()
+                self.assertEqual((said["op"], said["level"]), ("status", 2), said)
+            client.send(b"\1\2\3", opcode=2)
+            client.send('{"op": "of a later version"}')
+            subscribe(74, "/labels")
+            self.assertEqual([row["label"] for row in client.data()[2]["labels"]], sorted(colors))
+
+    def test_strangers_do_not_look_through_foxglove(self):
+        for options, status in (({"origin": "https://other.example"}, 403), ({"host": "evil.example"}, 403), ({"subprotocol": None}, 426),
+                                ({"subprotocol": "chat"}, 426), ({"origin": "https://app.example"}, 101)):
+            with WebSocket(self.server.foxglove, **options) as client:
+                self.assertEqual(client.status, status, options)
+        for bad in (lambda c: c.send("{}", masked=False), lambda c: c.send("x" * 70000), lambda c: c.socket.sendall(b"\xff" * 64)):
+            with WebSocket(self.server.foxglove) as client:
+                client.said(), client.said()
+                bad(client)
+                self.assertIsNone(client.receive())
+        address = self.server.foxglove.removeprefix("ws://").split(":")
+        silent = [socket.create_connection((address[0], int(address[1]))) for _ in range(40)]  # more than there is room for
+        silent[0].sendall(b"GET / HTTP/1.1\r\nHo")
+        silent[1].sendall(b"\0" * 20000)
+        for s in silent:
+            s.close()
+        for _ in range(50):
+            try:
+                with WebSocket(self.server.foxglove) as client:
+                    self.assertEqual(client.said()["op"], "serverInfo")
+                    break
+            except (OSError, IndexError):
+                time.sleep(0.1)
+        else:
+            self.fail("it does not come back")
+        self.assertEqual(self.server.ask("/api/status")[0].status, 200)
+
+    def test_what_the_library_names_says_so(self):
+        with tempfile.TemporaryDirectory(prefix="shoal_library_") as top:
+            first, second, file = (os.path.join(top, name) for name in ("first", "second", "reef.library"))
+            shutil.copytree(self.run_dir, first)
+            rows = json.loads(command("labels", "--run", first, "--json"))["labels"]
+            command("name", str(max(rows, key=lambda row: row["cells"])["label"]), "sand", "--run", first)
+            command("library", "save", "--run", first, "--out", file)
+            command("launch", "--world", "reef:tuning", "--robots", "2", "--observations", "6", "--seed", "7", "--library", file, "--record",
+                    "--out", second)
+            for recorded in (True, False):
+                if not recorded:
+                    os.remove(os.path.join(second, "mission.lcmlog"))
+                with Server("--run", second) as server:
+                    server.settled()
+                    labels = server.json("/api/labels")
+                    jsonschema.validate(labels, schema("labels"))
+                    self.assertIn(["sand"], [row["library"] for row in labels["labels"]])
+                    self.assertIn([], [row["library"] for row in labels["labels"]])
+                    self.assertEqual(labels, json.loads(command("labels", "--run", second, "--json")))
+                    tracks = {t["robot"]: t["points"] for t in server.json("/api/tracks")["tracks"]}
+                    for robot in ("R00", "R01"):
+                        with open(os.path.join(second, "robots", robot, "poses.txt"), encoding="utf-8") as file:
+                            poses = [[float(v) for v in line.split()[:4]] for line in file if not line.startswith("#")]
+                        self.assertEqual([p[1:] for p in tracks[robot]][-1], [round(v, 3) for v in poses[-1][1:]])
+                        if not recorded:
+                            self.assertEqual(tracks[robot], [[round(v, 3) for v in pose] for pose in poses])
 
     def test_strangers_are_turned_away(self):
         ask = self.server.ask
@@ -393,7 +598,20 @@ class Live(unittest.TestCase):
                     node.send_signal(signal.SIGINT)
                     node.wait(timeout=20)
                     self.assertRegex(server.settled("lost")["problem"], "no running node|did not answer")
-                    self.assertEqual(tiles(server.ask("/api/map")[1])[0], cells)  # what was known is still shown
+                    kept, header = tiles(server.ask("/api/map?cells=all")[1])
+                    self.assertEqual(kept, cells)  # what was known is still shown
+                    labels = server.json("/api/labels")
+                # The node's memory of it is as good as a recording.
+                (memory,) = [name for name in os.listdir(state) if name.endswith(".sqlite")]
+                with Server("--log", os.path.join(state, memory)) as server:
+                    server.settled()
+                    again, remembered = tiles(server.ask("/api/map?cells=all")[1])
+                    self.assertEqual(again, cells)
+                    for what in ("surprises", "lower"):
+                        self.assertEqual(remembered[what], header[what], what)
+                    for theirs, ours in zip(server.json("/api/labels")["labels"], labels["labels"], strict=True):
+                        del theirs["pictures"]
+                        self.assertEqual(theirs, ours)
             finally:
                 for process in started:
                     if process.poll() is None:

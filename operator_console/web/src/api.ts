@@ -8,7 +8,7 @@ export interface Mission {
 }
 export interface Label {
   label: number; name: string; cells: number; area_m2: number; first_seen_s: number; last_seen_s: number;
-  certainty: number; robots: string[]; color: string;
+  certainty: number; robots: string[]; color: string; library?: string[]; // what the library in force calls it
 }
 export interface Node {
   name: string; phase: string; heard_s: number; observation: number; num_observations: number; topics: number;
@@ -27,6 +27,7 @@ export interface Why {
   shared_words: { first: number; size: number; words: { word: number; share: number; members: number }[] }[];
 }
 export interface Picture { robot: string; topic: number; example: number; seen_s: number; layers: number; num_layers: number }
+export interface Place { x_m: number; y_m: number; z_m: number; surprise: number; label: number; name: string; area_m2: number; robots: string[]; first_seen_s: number; last_seen_s: number }
 export interface TruthClass { id: number; name: string; color: string }
 export interface CellHistory {
   cells: { x_m: number; y_m: number; z_m: number; label: number; name: string; robot: string; seen_s: number;

@@ -15,6 +15,18 @@ export function ramp(share: number): number {
 }
 export const rampCss = `linear-gradient(90deg, ${STOPS.map((s) => `rgb(${s})`).join(", ")})`;
 
+// What stands out: from pale to dark red, and what does not in pale grey. Steps of 1/8 up to 6; more is as dark.
+const ALARM = [[254, 217, 142], [254, 153, 41], [217, 95, 14], [153, 52, 4], [82, 20, 0]];
+export const LEAST_SURPRISE = 1.5, MOST_SURPRISE = 6;
+export const USUAL = "#d5dae0";
+export function surpriseColor(surprise: number): number {
+  if (surprise <= 0) return parse(USUAL);
+  const at = Math.max(0, Math.min(1, (surprise - LEAST_SURPRISE) / (MOST_SURPRISE - LEAST_SURPRISE))) * (ALARM.length - 1);
+  const i = Math.min(ALARM.length - 2, Math.floor(at)), mix = (c: number): number => Math.round(ALARM[i][c] + (at - i) * (ALARM[i + 1][c] - ALARM[i][c]));
+  return rgba(mix(0), mix(1), mix(2));
+}
+export const alarmCss = `linear-gradient(90deg, ${ALARM.map((s) => `rgb(${s})`).join(", ")})`;
+
 // Okabe and Ito's, then Tol's muted ones.
 const ROBOTS = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#d55e00", "#56b4e9", "#332288", "#999933", "#882255", "#44aa99",
                 "#117733", "#aa4499"];

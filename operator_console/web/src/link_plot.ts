@@ -17,7 +17,11 @@ export function drawLink(canvas: HTMLCanvasElement, traffic: Traffic, only: stri
     sums.set(t, sum);
   }
   const times = [...sums.keys()].sort((a, b) => a - b);
-  if (times.length === 0) return;
+  if (times.length < 2) { // of a run without its recording nothing is known but the sums
+    c.fillStyle = "#5b6673"; c.font = "12px system-ui, sans-serif"; c.textAlign = "center";
+    c.fillText(times.length === 0 ? "nothing has been sent" : "only a recording knows when what was sent", width / 2, height / 2);
+    return;
+  }
   const budget = nodes.every((n) => n.budget > 0) ? nodes.reduce((s, n) => s + n.budget, 0) : 0;
   const peak = Math.max(...[...sums.values()].map((s) => s.reduce((a, b) => a + b, 0)), 1);
   const top = budget > 0 && budget < 3 * peak ? Math.max(peak, budget * 1.08) : peak * 1.05;

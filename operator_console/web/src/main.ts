@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import { ask, askBytes, decide, hasToken, takeToken } from "./api";
-import type { CellHistory, Happening, Label, Mission, Node, Picture, Status, Track, Traffic, TruthClass, Why } from "./api";
-import { classColor, rampCss, robotColor } from "./colors";
+import type { CellHistory, Happening, Label, Mission, Node, Picture, Place, Status, Track, Traffic, TruthClass, Why } from "./api";
+import { alarmCss, classColor, LEAST_SURPRISE, MOST_SURPRISE, rampCss, robotColor, USUAL } from "./colors";
 import { area, byId, el, seconds } from "./dom";
 import { openExports } from "./exports";
 import { drawLink, rateText } from "./link_plot";
@@ -23,10 +23,10 @@ let classes: TruthClass[] = [], truthOf = ""; // what the truth was fetched for
 const pictures = new Pictures();
 const updates: { at: number; bytes: number; fetchMs: number }[] = []; // the last ones, for measuring
 const HINT = byId("readout").textContent!;
-let depth: View3D | null = null, // the view in 3-D, while it is shown
-    hasLower = false; // the map was asked for with the cells that lie below others
-const LAYER_TEXT: Record<Layer, string> = { label: "Label", certainty: "Certainty", age: "Age", robot: "Robot", coverage: "Coverage", truth: "Truth" };
+let depth: View3D | null = null; // the view in 3-D, while it is shown
+const LAYER_TEXT: Record<Layer, string> = { label: "Label", certainty: "Certainty", surprise: "Surprise", age: "Age", robot: "Robot", coverage: "Coverage", truth: "Truth" };
 
+const LIBRARY = "R9999"; // tells what missions before have named
 const nameOf = (label: number): string => labels.find((l) => l.label === label)?.name || String(label);
 const colorOf = (label: number): string => labels.find((l) => l.label === label)?.color ?? "#999";
 const mayWrite = (): boolean => mission !== null && !mission.read_only && hasToken();
@@ -49,14 +49,15 @@ async function refresh(what: What = "all"): Promise<void> {
     } else if (!allLater) allLater = window.setTimeout(() => { allLater = 0; void refresh(); }, Math.max(0, nextAll - performance.now()));
     const at = past === null ? "" : `?at=${past}`;
     if (mission!.sequence > 0) {
-      const begun = performance.now(), withLower = depth !== null;
+      const begun = performance.now();
       const [bytes, newStatus] = await Promise.all([askMap(at), ask<Status>("/api/status" + at), what === "all" ? askToRead(at) : null]);
       status = newStatus;
       map.nodes = status.nodes; map.tracksUntil = past ?? Infinity;
-      if (bytes) { map.take(decodeTiles(bytes)); hasLower = withLower; } else map.draw();
+      if (bytes) map.take(decodeTiles(bytes)); else map.draw();
       updates.push({ at: performance.now(), bytes: bytes?.byteLength ?? 0, fetchMs: performance.now() - begun });
       if (updates.length > 1000) updates.splice(0, 500);
       if (map.layer === "truth") void fetchTruth();
+      if (map.layer === "surprise" && what === "all") void fetchStrangest();
       if (past !== null) map.sequence = 0, map.life = ""; // the next newest map comes whole
       if (!fitted && !map.isEmpty) { fitted = true; followed = !restoreView(); }
       if (followed && !map.isEmpty) fitAll();
@@ -75,12 +76,9 @@ async function refresh(what: What = "all"): Promise<void> {
 
 // Null: the page has it already.
 async function askMap(at: string): Promise<ArrayBuffer | null> {
-  const cells = depth ? "cells=all" : "",
-        knows = past === null && map.life === mission!.life && map.sequence > 0 && hasLower === (depth !== null);
+  const knows = past === null && map.life === mission!.life && map.sequence > 0;
   if (knows && map.sequence === mission!.sequence) return null;
-  const since = knows ? `since=${map.sequence}&life=${map.life}` : "";
-  const query = [at.slice(1), since, cells].filter((part) => part !== "").join("&");
-  return askBytes("/api/map" + (query === "" ? "" : "?" + query));
+  return askBytes("/api/map?cells=all" + at.replace("?", "&") + (knows ? `&since=${map.sequence}&life=${map.life}` : ""));
 }
 
 async function askToRead(at: string): Promise<void> {
@@ -149,6 +147,9 @@ function showCounts(): void {
   byId("counts").textContent = status ? `${status.cells.toLocaleString("en")} cells · ${labels.length} labels · ${area(labels.reduce((s, l) => s + l.area_m2, 0))}` : "";
 }
 
+// Known from a mission before.
+const libraryMark = (l: Label): HTMLElement | null => l.library?.length ? el("span", { class: "library", title: `The library of missions before knows it as ${l.library.map((n) => `“${n}”`).join(", ")}` }, "library") : null;
+
 function showLegend(): void {
   if (document.activeElement?.closest("#legend input")) return; // somebody is typing a name
   const total = labels.reduce((s, l) => s + l.area_m2, 0) || 1;
@@ -161,7 +162,7 @@ function showLegend(): void {
   },
     el("span", { class: "swatch", style: `background:${l.color}` }),
     el("span", { class: "examples" }, ...pictures.ofLabel(l.label).slice(0, 2).map((p) => pictures.image("legend", p))),
-    el("span", { class: "what" }, el("span", { class: "name", "data-label": String(l.label) }, l.name || `label ${l.label}`),
+    el("span", { class: "what" }, el("span", { class: "titled" }, el("span", { class: "name", "data-label": String(l.label) }, l.name || `label ${l.label}`), libraryMark(l)),
       el("small", { class: "dim" }, `${area(l.area_m2)} · ${l.robots.length === 1 ? "only " + l.robots[0] : `${l.robots.length} robots`}`)),
     el("span", { class: "bar" }, el("i", { style: `width:${(100 * l.area_m2) / total}%;background:${l.color}` })),
     el("span", { class: "number dim" }, `${((100 * l.area_m2) / total).toFixed(l.area_m2 * 100 < total ? 1 : 0)} %`));
@@ -217,12 +218,20 @@ function showTime(): void {
 
 function showRamp(): void {
   const box = byId("ramp");
-  box.hidden = map.layer !== "certainty" && map.layer !== "age" && map.layer !== "truth";
+  box.hidden = !["certainty", "surprise", "age", "truth"].includes(map.layer);
   if (box.hidden) return;
   if (map.layer === "truth") {
     box.replaceChildren(...(classes.length ? classes.map((c) => el("span", { class: "class" }, el("b", { class: "swatch", style: `background:${c.color}` }), c.name)) : ["the truth is being worked out…"]));
     return;
   }
+  if (map.layer === "surprise") {
+    box.title = "Beside all that its robot had met: 1 is what one cell in ten exceeds";
+    box.replaceChildren(el("span", { class: "class" }, el("b", { class: "swatch", style: `background:${USUAL}` }), "as usual"),
+      el("span", {}, `surprised: ${LEAST_SURPRISE}`), el("i", { style: `background:${alarmCss}` }), el("span", {}, `${MOST_SURPRISE} and more`),
+      el("div", { class: "places" }, ...(strangest.length ? ["strangest: "] : []), ...strangest.map((p) => el("button", { class: "small", title: `${area(p.area_m2)} that ${p.robots.join(", ")} saw first at ${seconds(p.first_seen_s)}; labelled ${p.name || p.label}`, click: () => goTo(p) }, p.surprise.toFixed(1)))));
+    return;
+  }
+  box.title = "";
   const [low, high] = map.layer === "certainty" ? ["unsure", "sure"] : [`${seconds(map.ageRange()[1])} ago`, "just seen"];
   box.replaceChildren(el("span", {}, low), el("i", { style: `background:${rampCss}` }), el("span", {}, high));
 }
@@ -232,6 +241,25 @@ function setLayer(layer: Layer): void {
   for (const button of byId("layers").children) button.setAttribute("aria-checked", String((button as HTMLElement).dataset.layer === layer));
   map.repaint(); showRamp(); remember();
   if (layer === "truth") void fetchTruth();
+  if (layer === "surprise") void fetchStrangest();
+}
+
+// The places that surprised most: asked for when they are looked at, not more often than every five seconds.
+let strangest: Place[] = [], strangestAt = -Infinity, strangestOf = "";
+async function fetchStrangest(): Promise<void> {
+  const of = `${mission?.life} ${mission?.sequence}`;
+  if (past !== null) { strangest = []; return showRamp(); }
+  if (of === strangestOf || performance.now() < strangestAt + 5000) return;
+  [strangestAt, strangestOf] = [performance.now(), of];
+  try { strangest = (await ask<{ places: Place[] }>("/api/surprises?least=2")).places.slice(0, 8); } catch { strangest = []; }
+  showRamp();
+}
+function goTo(p: Place): void {
+  followed = false;
+  if (depth) { depth.target.set(p.x_m, p.y_m, p.z_m); depth.distance = Math.min(depth.distance, 60 * map.cellSize); } else { map.center = { x: p.x_m, y: p.y_m }; map.scale = Math.max(map.scale, 12 / map.cellSize); }
+  map.draw();
+  void inspectCell(map.cellAt(p.x_m, p.y_m, p.z_m));
+  if (!depth) { map.center.x += map.covered / 2 / map.scale; map.draw(); }
 }
 
 // ---------- asking and deciding
@@ -277,7 +305,7 @@ async function inspect(label: number, cell?: HTMLElement): Promise<void> {
   buttons.append(el("a", { href: `/api/area?label=${label}&format=geojson`, download: `label${label}.geojson`, class: "button" }, "Patches"));
   const why = el("div", { class: "why dim" }, "asking why…");
   box.replaceChildren(el("div", { class: "head" }, el("span", { class: "swatch big", style: `background:${colorOf(label)}` }), el("b", {}, l?.name || `label ${label}`),
-    el("span", { class: "dim" }, l?.name ? `label ${label}` : ""), el("span", { class: "grow" }), el("button", { class: "small", "aria-label": "Close", click: () => choose(null) }, "×")),
+    el("span", { class: "dim" }, l?.name ? `label ${label}` : ""), l ? libraryMark(l) : null, el("span", { class: "grow" }), el("button", { class: "small", "aria-label": "Close", click: () => choose(null) }, "×")),
     l ? el("div", { class: "dim" }, `${area(l.area_m2)}, first seen ${seconds(l.first_seen_s)}, last ${seconds(l.last_seen_s)}, ${(100 * l.certainty).toFixed(0)} % sure in the mean`) : "",
     el("div", { class: "strip" }, ...pictures.ofLabel(label).slice(0, 8).map((p) => pictures.image("inspector", p))), cell ?? "", buttons, why);
   try {
@@ -289,7 +317,7 @@ async function inspect(label: number, cell?: HTMLElement): Promise<void> {
 function whyTable(w: Why): HTMLElement {
   const percent = (s: number | null): string => (s === null ? "–" : s.toFixed(2));
   const bar = (s: number | null, color: string): HTMLElement => el("span", { class: "sim" }, el("i", { style: `width:${44 * Math.max(0, s ?? 0)}px;background:${color}` }), percent(s));
-  const robots = new Set(w.members.map((m) => m.robot)).size, takes = w.sigma === null ? "" : ` From ${w.sigma.toFixed(2)} on things count as the same, 1 is equal.`;
+  const robots = new Set(w.members.map((m) => m.robot).filter((robot) => robot !== LIBRARY)).size, takes = w.sigma === null ? "" : ` From ${w.sigma.toFixed(2)} on things count as the same, 1 is equal.`;
   const sentence = w.members.length === 1 ? `Only ${w.members[0].robot} knows it: nobody else told of anything enough like it.${takes}`
     : `${robots === 1 ? "One robot" : `${robots} robots`} told of ${w.members.length} things that look alike.${takes}`;
   const kinds = w.shared_words.filter((g) => g.words.some((word) => word.members === w.members.length)).length;
@@ -298,7 +326,8 @@ function whyTable(w: Why): HTMLElement {
   return el("div", { class: "why" }, el("h3", {}, "Why are these the same?"), el("p", {}, sentence),
     el("table", {}, el("tr", {}, el("th", { colspan: "2" }, "seen by"), el("th", { title: "mean similarity to the others of this label, 0 to 1" }, "like these"), el("th", { colspan: "2", title: "the thing outside this label that is most like it" }, "most like it outside")),
       ...w.members.map((m) => el("tr", {}, el("td", { class: "face" }, face("member", m.robot, m.topic)),
-        el("td", {}, el("span", { class: "dot", style: `background:${robotColor(Number(m.robot.slice(1)))}` }), m.robot, el("small", { class: "dim" }, ` topic ${m.topic}, ${m.cells} cells`)),
+        el("td", {}, el("span", { class: "dot", style: `background:${m.robot === LIBRARY ? "#1d2733" : robotColor(Number(m.robot.slice(1)))}` }), m.robot === LIBRARY ? "library" : m.robot,
+          el("small", { class: "dim" }, m.robot === LIBRARY ? " of missions before" : ` topic ${m.topic}, ${m.cells} cells`)),
         el("td", {}, bar(m.mean_similarity, "#0072b2")),
         el("td", { class: "face" }, m.outsider ? face(`outsider of ${m.robot}/${m.topic}`, m.outsider.robot, m.outsider.topic) : ""),
         el("td", {}, m.outsider ? bar(m.outsider.similarity, "#e69f00") : "–")))),
@@ -312,7 +341,7 @@ async function inspectCell(cell: Cell | null): Promise<void> {
   if (!cell) return choose(null);
   if (linking !== null) return choose(cell.label);
   map.selected = cell.label; map.repaint(); show(); remember();
-  const list = el("div", { class: "cell" }, el("code", {}, `${cell.x.toFixed(2)} ${cell.y.toFixed(2)}`), depth ? ` m, ${cell.z.toFixed(2)} m high: ` : " m: ", `R${String(cell.robot).padStart(2, "0")} saw it last at ${seconds(cell.seen)}, ${(100 * cell.certainty).toFixed(0)} % sure`);
+  const list = el("div", { class: "cell" }, el("code", {}, `${cell.x.toFixed(2)} ${cell.y.toFixed(2)}`), depth ? ` m, ${cell.z.toFixed(2)} m high: ` : " m: ", `R${String(cell.robot).padStart(2, "0")} saw it last at ${seconds(cell.seen)}, ${(100 * cell.certainty).toFixed(0)} % sure` + (cell.surprise > 0 ? `; it surprised: ${cell.surprise.toFixed(1)} (1 is what one cell in ten exceeds)` : ""));
   void inspect(cell.label, list);
   try {
     const answer = await ask<CellHistory>(`/api/at?x=${cell.x}&y=${cell.y}`);
@@ -369,11 +398,11 @@ async function setDepth(on: boolean, camera: number[] | null = null): Promise<vo
   if (on) {
     try { depth = await openDepth(); } catch { view3d = null; return toast("This browser cannot draw in 3-D."); }
     map.depth = depth;
+    depth.forget(); // the map may be another since it was left
     for (const key of map.tiles.keys()) depth.soil(key);
     depth.look(map.center, map.scale);
     if (camera) [depth.azimuth, depth.elevation, depth.distance, depth.target.z] = camera;
     if (followed) fitAll();
-    if (!hasLower) map.sequence = 0; // with what lies below
   } else {
     map.center = { x: depth!.target.x, y: depth!.target.y }; map.scale = Math.max(0.02, Math.min(400, depth!.scale()));
     map.depth = depth = null;
@@ -383,7 +412,7 @@ async function setDepth(on: boolean, camera: number[] | null = null): Promise<vo
   byId("threed").setAttribute("aria-pressed", String(on));
   byId("map").classList.toggle("turns", on);
   byId("readout").textContent = on ? "Click: what is here, and why · drag: turn · right or Shift and drag: move · wheel: zoom" : HINT;
-  map.repaint(); remember(); void refresh();
+  map.repaint(); remember();
 }
 const fitAll = (): void => { if (depth) { depth.fit(map.covered); map.draw(); } else map.fit(); };
 const panBy = (px: number, py: number): void => { if (depth) { depth.pan(px, py); map.draw(); } else map.pan(px, py); };
@@ -421,7 +450,7 @@ function restoreView(): boolean {
 
 // ---------- hands
 
-const KEYS: [string, string][] = [["click", "what is here, and why"], ["drag, wheel", "move, zoom"], ["arrows + − 0", "move, zoom, see everything"], ["d", "in 3-D: drag or Shift and arrows turn, Shift and drag moves"], ["1 … 6", "label, certainty, age, robot, coverage, truth (when it is known)"],
+const KEYS: [string, string][] = [["click", "what is here, and why"], ["drag, wheel", "move, zoom"], ["arrows + − 0", "move, zoom, see everything"], ["d", "in 3-D: drag or Shift and arrows turn, Shift and drag moves"], ["1 … 7", "label, certainty, surprise, age, robot, coverage, truth (when it is known)"],
   ["[ ] space", "earlier, later, play"], ["n", "name the chosen label"], ["u", "undo"], ["e", "export"], ["Esc", "choose nothing"]];
 
 function hands(): void {
@@ -437,7 +466,7 @@ function hands(): void {
     const cell = cellUnder(e.offsetX, e.offsetY);
     if (depth && !cell) return;
     const [x, y] = depth ? [cell!.x, cell!.y] : map.toWorld(e.offsetX, e.offsetY);
-    byId("readout").textContent = `${x.toFixed(1)}, ${y.toFixed(1)}${depth ? `, ${cell!.z.toFixed(1)}` : ""} m` + (cell ? ` · ${nameOf(cell.label)} · R${String(cell.robot).padStart(2, "0")} at ${seconds(cell.seen)} · ${(100 * cell.certainty).toFixed(0)} % sure` + (map.layer === "truth" && cell.truth !== null ? ` · truly ${classes.find((c) => c.id === cell.truth)?.name ?? cell.truth}` : "") : "");
+    byId("readout").textContent = `${x.toFixed(1)}, ${y.toFixed(1)}${depth ? `, ${cell!.z.toFixed(1)}` : ""} m` + (cell ? ` · ${nameOf(cell.label)} · R${String(cell.robot).padStart(2, "0")} at ${seconds(cell.seen)} · ${(100 * cell.certainty).toFixed(0)} % sure` + (cell.surprise > 0 ? ` · surprise ${cell.surprise.toFixed(1)}` : "") + (map.layer === "truth" && cell.truth !== null ? ` · truly ${classes.find((c) => c.id === cell.truth)?.name ?? cell.truth}` : "") : "");
   });
   canvas.addEventListener("pointerup", (e) => { if (from && !moved && e.button === 0) void inspectCell(cellUnder(e.offsetX, e.offsetY)); else remember(); from = null; });
   canvas.addEventListener("wheel", (e) => { e.preventDefault(); followed = false; zoomBy(Math.exp(-e.deltaY * 0.0015), e.offsetX, e.offsetY); remember(); }, { passive: false });

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The map on a canvas: squares of 256 x 256 columns kept as pictures, redrawn only where cells changed.
-import { faded, parse, ramp, rgba, robotColor } from "./colors";
+import { faded, parse, ramp, rgba, robotColor, surpriseColor } from "./colors";
 import type { Label, Node, Track, TruthClass } from "./api";
 import { SIDE, type Cells, type Tile, type TileSet } from "./tiles";
 
-export type Layer = "label" | "certainty" | "age" | "robot" | "coverage" | "truth";
-export const LAYERS: Layer[] = ["label", "certainty", "age", "robot", "coverage", "truth"];
-export interface Cell { x: number; y: number; z: number; label: number; seen: number; robot: number; certainty: number; truth: number | null }
+export type Layer = "label" | "certainty" | "surprise" | "age" | "robot" | "coverage" | "truth";
+export const LAYERS: Layer[] = ["label", "certainty", "surprise", "age", "robot", "coverage", "truth"];
+export interface Cell { x: number; y: number; z: number; label: number; seen: number; robot: number; certainty: number; surprise: number; truth: number | null }
 
 const CHUNK = 8; // tiles along the edge of a picture
 const SILENT_S = 5;
@@ -93,11 +93,13 @@ export class MapView {
     const [oldest, newest] = this.painted, span = Math.max(1, newest - oldest);
     const grey = rgba(150, 150, 150), unknown = rgba(205, 209, 213), covered = rgba(68, 140, 150);
     const steps = Uint32Array.from({ length: 256 }, (_, i) => ramp(i / 255));
+    const alarms = Uint32Array.from({ length: 64 }, (_, i) => surpriseColor(i / 8));
     const robots = new Map<number, number>();
     const plain = (cells: Cells, i: number, tile: Tile, column: number): number => {
       switch (layer) {
         case "label": return colors.get(cells.label[i]) ?? grey;
         case "certainty": return steps[cells.certainty[i]];
+        case "surprise": return alarms[Math.min(63, cells.surprise[i])];
         case "age": return steps[Math.max(0, Math.min(255, Math.round(255 * (1 - (newest - cells.seen[i]) / span))))];
         case "robot": {
           let color = robots.get(cells.robot[i]);
@@ -265,18 +267,26 @@ export class MapView {
     c.fillText(`${metres} m`, 24, y - 4);
   }
 
-  cellAt(x: number, y: number): Cell | null {
+  // The column's highest cell, or the one nearest to a height.
+  cellAt(x: number, y: number, z: number | null = null): Cell | null {
     const cx = Math.floor(x / this.cellSize + 0.5), cy = Math.floor(y / this.cellSize + 0.5);
     const tx = Math.floor(cx / SIDE), ty = Math.floor(cy / SIDE);
     const tile = this.tiles.get(tx + "," + ty);
     const i = (cy - ty * SIDE) * SIDE + (cx - tx * SIDE);
-    return tile && tile.label[i] >= 0 ? this.cellOf(tile, tile, i, i) : null;
+    if (!tile || tile.label[i] < 0) return null;
+    let best = this.cellOf(tile, tile, i, i);
+    tile.lower.place.forEach((place, n) => {
+      if (z === null || place !== i) return;
+      const cell = this.cellOf(tile, tile.lower, n, i);
+      if (Math.abs(cell.z - z) < Math.abs(best.z - z)) best = cell;
+    });
+    return best;
   }
 
   cellOf(tile: Tile, cells: Cells, i: number, column: number): Cell {
     const truth = cells === tile ? this.truth.get(tile.x + "," + tile.y)?.label[column] ?? -1 : -1;
     return { x: (tile.x * SIDE + column % SIDE) * this.cellSize, y: (tile.y * SIDE + Math.floor(column / SIDE)) * this.cellSize, z: cells.height[i] * this.cellSize,
-             truth: truth < 0 ? null : truth, label: cells.label[i], seen: this.base + cells.seen[i] / 10, robot: cells.robot[i], certainty: cells.certainty[i] / 255 };
+             truth: truth < 0 ? null : truth, label: cells.label[i], seen: this.base + cells.seen[i] / 10, robot: cells.robot[i], certainty: cells.certainty[i] / 255, surprise: cells.surprise[i] / 8 };
   }
 
   // The box around all cells, indices: x, y and z from, x, y and z to; null while there are none.

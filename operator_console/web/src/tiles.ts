@@ -4,7 +4,7 @@
 export const SIDE = 32;
 const COLUMNS = SIDE * SIDE;
 
-export interface Cells { label: Int32Array; seen: Int32Array; robot: Int16Array; height: Int16Array; certainty: Uint8Array }
+export interface Cells { label: Int32Array; seen: Int32Array; robot: Int16Array; height: Int16Array; certainty: Uint8Array; surprise: Uint8Array }
 export interface Tile extends Cells {
   x: number; y: number;
   lower: Cells & { place: Uint16Array }; // what lies under the columns' highest cells, when it was asked for
@@ -30,9 +30,8 @@ export function decodeTiles(buffer: ArrayBuffer): TileSet {
     for (let i = 0; i < count; ++i) {
       const x = view.getInt32(at, true), y = view.getInt32(at + 4, true), n = view.getUint32(at + 8, true);
       at += 16;
-      const top = { label: longs(COLUMNS), seen: longs(COLUMNS), robot: shorts(COLUMNS), height: shorts(COLUMNS), certainty: bytes(COLUMNS) };
-      const lower = { label: longs(n), seen: longs(n), place: places(n), height: shorts(n), robot: shorts(n), certainty: bytes(n) };
-      at += n;
+      const top = { label: longs(COLUMNS), seen: longs(COLUMNS), robot: shorts(COLUMNS), height: shorts(COLUMNS), certainty: bytes(COLUMNS), surprise: bytes(COLUMNS) };
+      const lower = { label: longs(n), seen: longs(n), place: places(n), height: shorts(n), robot: shorts(n), certainty: bytes(n), surprise: bytes(n) };
       tiles.push(measured({ x, y, ...top, lower, oldest: Infinity, newest: -Infinity, count: 0, box: null, span: [0, 0] }));
     }
   } catch { at = -1; }

@@ -29,9 +29,12 @@ export interface Camera { azimuth: number; elevation: number; distance: number; 
 
 ColorManagement.enabled = false;
 // A cell without colour is nowhere.
-const BOX = `attribute vec3 offset; attribute vec4 shade; uniform float size; varying vec3 color;
-void main() { color = shade.rgb * (0.62 + 0.38 * max(0.0, normal.z) + 0.16 * abs(normal.x));
+const BOX = `attribute vec3 offset; attribute vec4 shade; uniform float size; varying vec3 color; varying vec3 place;
+void main() { place = position; color = shade.rgb * (0.62 + 0.38 * max(0.0, normal.z) + 0.16 * abs(normal.x));
   gl_Position = shade.a < 0.5 ? vec4(2.0, 2.0, 2.0, 1.0) : projectionMatrix * modelViewMatrix * vec4(position * size + offset, 1.0); }`;
+const EDGED = `varying vec3 color; varying vec3 place;
+void main() { vec3 face = abs(place); float edge = face.x + face.y + face.z - max(face.x, max(face.y, face.z)) - min(face.x, min(face.y, face.z)), pixel = fwidth(edge);
+  gl_FragColor = vec4(color * (1.0 - 0.22 * smoothstep(0.5 - 1.5 * pixel, 0.5, edge) * (1.0 - smoothstep(0.04, 0.12, pixel))), 1.0); }`; // thin lines, when they are not all there is
 const SQUARE = `attribute vec4 shade; uniform float size; uniform float scale; varying vec3 color;
 void main() { color = shade.rgb; vec4 at = modelViewMatrix * vec4(position, 1.0);
   gl_Position = shade.a < 0.5 ? vec4(2.0, 2.0, 2.0, 1.0) : projectionMatrix * at; gl_PointSize = max(1.0, 1.15 * size * scale / -at.z); }`;
@@ -51,7 +54,7 @@ export class View3D implements DepthView {
   private readonly isSoftware: boolean;
   private asBoxes = true;
   private grid: GridHelper | null = null; private gridStep = 0;
-  private width = 1; private height = 1;
+  private width: number; private height: number; // of the canvas, as of the last frame
   private eye = "";
   private movedAt = -Infinity; private later = 0; // when the eye or a cell moved last
 
@@ -64,9 +67,11 @@ export class View3D implements DepthView {
     this.renderer.outputColorSpace = LinearSRGBColorSpace; // colours are shown as they are given
     this.renderer.setClearColor(0xeef0f2, 1);
     const uniforms = { size: { value: 1 }, scale: { value: 1 } };
-    this.boxes = new ShaderMaterial({ vertexShader: BOX, fragmentShader: PAINT, uniforms });
+    this.boxes = new ShaderMaterial({ vertexShader: BOX, fragmentShader: EDGED, uniforms });
     this.squares = new ShaderMaterial({ vertexShader: SQUARE, fragmentShader: PAINT, uniforms });
     this.camera.up.set(0, 0, 1);
+    this.width = Math.max(1, map.canvas.clientWidth); this.height = Math.max(1, map.canvas.clientHeight);
+    this.renderer.setSize(this.width, this.height, false);
     for (const key of map.tiles.keys()) this.soil(key);
   }
 
