@@ -15,7 +15,8 @@ void addWhere(CLI::App& command, Asking& asking) {
   auto* where = command.add_option_group("where", "whom to ask: exactly one");
   where->add_option("--node", asking.where.node, "state folder of a running fusion_node");
   where->add_option("--run", asking.where.run, "folder of a finished mission");
-  where->add_option("--log", asking.where.log, "a recording made by lcm-logger, or what a node remembers (mission-*.sqlite)");
+  where->add_option("--log", asking.where.log,
+                    "a recording made by lcm-logger, or what a node remembers (mission-*.sqlite)");
   where->require_option(1);
   command
       .add_option("--matcher", asking.where.matcher.matcher,
