@@ -8,8 +8,8 @@
 
 namespace shoal::mapping {
 
-/// What surprised the robot as surprise.csv: x_m,y_m,z_m,surprise, as it travels (surpriseSteps()); ascending by
-/// cell.
+/// What surprised the robot as surprise.csv: x_m,y_m,z_m,surprise, as it travels (surpriseSteps()); ascending
+/// by cell.
 std::string surpriseCsv(const LocalBelief& belief, const world::Grid& grid);
 
 /// The labelled cells of a belief as map.csv: x_m,y_m,z_m,topic,seen_s,certainty; ascending by cell.

@@ -28,8 +28,8 @@ std::vector<Piece> wholePieces(const LocalBelief& belief) {
   std::map<std::array<int32_t, 3>, CertaintyPart> certainties;
   for (const BelievedCell& c : belief.cells) {
     bricks[brickOf(c.cell)].cells.push_back({c.cell, c.topic, c.seen});
-    certainties[brickOf(c.cell)].cells.push_back({c.cell, certaintySteps(c.certainty, belief.detail),
-                                            surpriseSteps(c.surprise)});
+    certainties[brickOf(c.cell)].cells.push_back(
+        {c.cell, certaintySteps(c.certainty, belief.detail), surpriseSteps(c.surprise)});
   }
   for (auto& [index, part] : bricks) {
     pieces.push_back({.key = {belief.robot, PieceKind::kBrick, index},

@@ -74,8 +74,8 @@ struct LocalBelief {
 std::vector<world::WordCount> quantize(const std::vector<world::WordCount>& counts,
                                        Detail detail = Detail::kFine);
 
-/// A certainty in [0, 1] in steps of 1/63, fit to travel: rounded to ninths, to thirds when coarse. Finer steps
-/// rank errors hardly better and take far more bytes: docs/labels.md.
+/// A certainty in [0, 1] in steps of 1/63, fit to travel: rounded to ninths, to thirds when coarse. Finer
+/// steps rank errors hardly better and take far more bytes: docs/labels.md.
 uint8_t certaintySteps(float certainty, Detail detail = Detail::kFine);
 
 /// A surprise in steps of 1/8, fit to travel: 0 below 1.5, so that only what stands out takes bytes, the last

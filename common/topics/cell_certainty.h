@@ -10,10 +10,11 @@ namespace shoal::topics {
 ///
 ///     c = 1 / (1 + 2^-x),    x = offset + slope ((2 log2 L_own - log2 L_other) / n + w),
 ///
-/// with L_own, L_other the likelihoods of the cell's n words under its topic and under the best other one, and w
-/// the mean of log2 of the sizes of the word groups. So there speak the lead over the next topic, and how much
-/// better than chance the words are explained at all; each of them in bits per word. The posterior mass of the
-/// label itself ranks errors worse, since most of the cells that are wrong are sure: docs/labels.md.
+/// with L_own, L_other the likelihoods of the cell's n words under its topic and under the best other one,
+/// and w the mean of log2 of the sizes of the word groups. So there speak the lead over the next topic, and
+/// how much better than chance the words are explained at all; each of them in bits per word. The posterior
+/// mass of the label itself ranks errors worse, since most of the cells that are wrong are sure:
+/// docs/labels.md.
 ///
 /// Integers but for the last division: the same on every machine.
 /// @param log_own, log_other  log2 of the likelihoods, in units of 2^-16, <= 0.

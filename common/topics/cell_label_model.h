@@ -70,9 +70,9 @@ class CellLabelModel final : public Learner {
 
   /// Topics as exact counts, every cell with its label.
   ///
-  /// The certainty of a cell is cellCertainty() of its topic, the best of its labels speaking for a topic, when
-  /// the cell was last drawn. Its surprise is how unusual, compared with all the robot had seen, its words were to the
-  /// model of the whole map just before they joined it, in the image that surprised most.
+  /// The certainty of a cell is cellCertainty() of its topic, the best of its labels speaking for a topic,
+  /// when the cell was last drawn. Its surprise is how unusual, compared with all the robot had seen, its
+  /// words were to the model of the whole map just before they joined it, in the image that surprised most.
   ///
   /// Cost: O(V K + cells log cells).
   Snapshot snapshot() const override;
@@ -108,8 +108,8 @@ class CellLabelModel final : public Learner {
     int64_t num_words = 0;                // the sum of their counts
     float certainty = 0;                  // when it was last drawn
     float surprise = 0;
-    int32_t slot = -1;                    // its label; -1 before the first draw
-    uint32_t num_draws = 0;               // names its next random numbers
+    int32_t slot = -1;       // its label; -1 before the first draw
+    uint32_t num_draws = 0;  // names its next random numbers
     int32_t seen_observation = 0;
     world::Timestamp seen;
   };
