@@ -200,7 +200,7 @@ comms::Packet Node::heartbeat(int64_t now_us) {
   h.pid = ::getpid();
   h.bytes_sent = static_cast<int64_t>(sender_.stats().linkBytes());
   h.budget = static_cast<int32_t>(options_.budget);
-  h.queue_bytes = static_cast<int32_t>(sender_.queue().waitingBytes());
+  h.queue_bytes = static_cast<int32_t>(std::min<int64_t>(sender_.backlog(), INT32_MAX));
   h.rejected = static_cast<int32_t>(std::min<uint64_t>(rejected, INT32_MAX));
   h.conflicts = state_.conflicts();
   for (size_t i = 0; i < wire::Heartbeat::kNumClasses; ++i) {

@@ -441,7 +441,7 @@ comms::Packet Agent::heartbeat(int64_t now_us) {
   }
   h.bytes_sent = static_cast<int64_t>(sender_.stats().linkBytes());
   h.budget = static_cast<int32_t>(options_.budget);
-  h.queue_bytes = static_cast<int32_t>(std::min<int64_t>(sender_.queue().waitingBytes(), INT32_MAX));
+  h.queue_bytes = static_cast<int32_t>(std::min<int64_t>(sender_.backlog(), INT32_MAX));
   h.rejected = static_cast<int32_t>(std::min<uint64_t>(rejected, INT32_MAX));
   h.conflicts = others_.conflicts() + (warned_of_twin_ ? 1 : 0);
   h.ms_per_frame = path_.empty() ? 0.f : static_cast<float>(total_ms_ / static_cast<double>(path_.size()));

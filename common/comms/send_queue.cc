@@ -100,6 +100,13 @@ std::vector<SendQueue::Next> SendQueue::nextOf(int64_t now_us, size_t most) cons
   return all;
 }
 
+std::vector<SendQueue::Next> SendQueue::waiting(TrafficClass traffic) const {
+  std::vector<Next> all;
+  for (const auto& [place, it] : of(traffic).waiting)
+    all.push_back({traffic, it->first, &it->second.packet, false});
+  return all;
+}
+
 // New content when there is any, else what is due to be said again.
 std::vector<SendQueue::Entries::const_iterator> SendQueue::chosen(int64_t now_us, size_t most) const {
   std::vector<Entries::const_iterator> all;

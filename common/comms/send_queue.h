@@ -70,6 +70,9 @@ class SendQueue {
   /// which they would go.
   std::vector<Next> nextOf(int64_t now_us, size_t most) const;
 
+  /// All of a class that waits, in the order in which it would go. Cost: O(what waits).
+  std::vector<Next> waiting(TrafficClass traffic) const;
+
   /// next() was sent. Aborts when there was nothing to send.
   void markSent(int64_t now_us) { markSent(now_us, 1, 0); }
 
@@ -88,8 +91,9 @@ class SendQueue {
 
   size_t numKeys() const { return entries_.size(); }
   size_t numWaiting(TrafficClass traffic) const { return of(traffic).waiting.size(); }
-  int64_t waitingBytes(TrafficClass traffic) const { return of(traffic).waiting_bytes; }  ///< On the wire.
-  int64_t waitingBytes() const;                                                           ///< Of all classes.
+  /// On the wire, if every packet went alone.
+  int64_t waitingBytes(TrafficClass traffic) const { return of(traffic).waiting_bytes; }
+  int64_t waitingBytes() const;  ///< Of all classes.
 
  private:
   struct Entry {

@@ -2,7 +2,10 @@
 #include "shoal/comms/sender.h"
 
 #include <algorithm>
+#include <map>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "shoal/demand.h"
 
@@ -11,6 +14,7 @@ namespace {
 
 constexpr size_t kMostJoined = 256;
 constexpr int kTriesToJoin = 6;
+constexpr size_t kBacklogTrials = 4;  // datagrams that are made to know what the others will take
 
 }  // namespace
 
@@ -52,33 +56,79 @@ int64_t Sender::pump(int64_t now_us) {
   }
 }
 
-// About as many as fit: how many is guessed from how many did last time, and mended a few times.
 const Sender::Made* Sender::make(int64_t now_us) {
   if (made_ && made_->revision == queue_.revision()) return &*made_;
   made_.reset();
   const std::vector<SendQueue::Next> next = queue_.nextOf(now_us, options_.join ? kMostJoined : 1);
   if (next.empty()) return nullptr;
-  const auto traffic = next.front().traffic;
-  made_ = Made{queue_.revision(), *next.front().packet, 1, traffic, next.front().resent};
-  size_t& last = joined_[static_cast<size_t>(traffic)];
+  size_t& last = joined_[static_cast<size_t>(next.front().traffic)];
+  made_ = pack(next, last);
+  last = made_->count;
+  return &*made_;
+}
+
+// About as many as fit: how many is guessed from how many did last time, and mended a few times.
+Sender::Made Sender::pack(std::span<const SendQueue::Next> next, size_t guess) const {
+  Made made{queue_.revision(), *next.front().packet, 1, next.front().traffic, next.front().resent};
+  if (!options_.join) return made;
   size_t too_many = next.size() + 1;
-  size_t count = std::clamp<size_t>(last, 2, next.size());
-  for (int tries = 0; tries < kTriesToJoin && made_->count < count && count < too_many; ++tries) {
-    auto joined = options_.join(std::span(next).first(count));
+  size_t count = std::clamp<size_t>(guess, 2, std::max<size_t>(next.size(), 2));
+  for (int tries = 0; tries < kTriesToJoin && made.count < count && count < too_many; ++tries) {
+    auto joined = options_.join(next.first(count));
     const size_t bytes = joined ? std::max<size_t>(joined->bytes.size(), 1) : 2 * options_.most_joined_bytes;
     if (bytes > options_.most_joined_bytes) {
       too_many = count;
     } else {
-      made_->packet = std::move(*joined);
-      made_->packet.trailer = link_.trailerBytes();
-      made_->count = count;
+      made.packet = std::move(*joined);
+      made.packet.trailer = link_.trailerBytes();
+      made.count = count;
       if (bytes * 8 > options_.most_joined_bytes * 7) break;  // full enough
     }
     const size_t proportional = count * options_.most_joined_bytes / bytes;
-    count = std::clamp(proportional, made_->count + 1, std::max(too_many - 1, made_->count + 1));
+    count = std::clamp(proportional, made.count + 1, std::max(too_many - 1, made.count + 1));
   }
-  last = made_->count;
-  return &*made_;
+  return made;
+}
+
+int64_t Sender::backlog() const {
+  if (!options_.join) return queue_.waitingBytes();
+  if (backlog_ && backlog_->first == queue_.revision()) return backlog_->second;
+  int64_t bytes = 0;
+  for (size_t c = 0; c < kNumTrafficClasses; ++c) {
+    const auto traffic = static_cast<TrafficClass>(c);
+    std::map<std::string_view, std::vector<SendQueue::Next>> by_channel;
+    for (const SendQueue::Next& next : queue_.waiting(traffic))
+      by_channel[next.packet->channel].push_back(next);
+    for (const auto& [channel, waiting] : by_channel) bytes += backlogOf(waiting, joined_[c]);
+  }
+  backlog_ = {queue_.revision(), bytes};
+  return bytes;
+}
+
+// Of one class and channel.
+int64_t Sender::backlogOf(std::span<const SendQueue::Next> waiting, size_t guess) const {
+  const auto alone = [](std::span<const SendQueue::Next> some) {
+    int64_t bytes = 0;
+    for (const SendQueue::Next& each : some) bytes += static_cast<int64_t>(wireSize(*each.packet));
+    return bytes;
+  };
+  int64_t tried = 0;  // bytes of what was tried, each alone
+  int64_t taken = 0;  // and in datagrams
+  size_t end = 0;     // of the last trial
+  bool has_gaps = false;
+  for (size_t trial = 0; trial < kBacklogTrials && end < waiting.size(); ++trial) {
+    const size_t begin = std::max(end, trial * waiting.size() / kBacklogTrials);
+    const auto rest = waiting.subspan(begin);
+    const Made made = pack(rest.first(std::min(rest.size(), kMostJoined)), guess);
+    has_gaps = has_gaps || begin > end;
+    if (has_gaps && made.count == rest.size()) break;  // not full: not like the others
+    end = begin + made.count;
+    guess = made.count;
+    tried += alone(rest.first(made.count));
+    taken += static_cast<int64_t>(wireSize(made.packet));
+  }
+  if (!has_gaps && end == waiting.size()) return taken;
+  return std::max<int64_t>(1, (alone(waiting) * taken + tried / 2) / tried);
 }
 
 void Sender::sendLocal(const Packet& packet) {

@@ -71,6 +71,12 @@ class Sender {
   /// Sends at once on the local bus: class local, paced in wall time, outside the budget.
   void sendLocal(const Packet& packet);
 
+  /// Bytes on the wire that it will take to say all that waits, with pieces sharing datagrams as they will:
+  /// exact while a class takes few datagrams, else from a few that are made of what waits for a trial, evenly
+  /// spread. 0 only when nothing waits.
+  /// Cost: some datagrams made per class with something waiting, once per change of the queue.
+  int64_t backlog() const;
+
   /// For the caller to count what it refused from others.
   Stats& stats() { return stats_; }
   const Stats& stats() const { return stats_; }
@@ -88,6 +94,8 @@ class Sender {
   };
 
   const Made* make(int64_t now_us);
+  Made pack(std::span<const SendQueue::Next> next, size_t guess) const;
+  int64_t backlogOf(std::span<const SendQueue::Next> waiting, size_t guess) const;
   int64_t earliest(int64_t now_us, const Packet& packet) const;
   void send(const Packet& packet, TrafficClass traffic, bool resent, int64_t now_us);
 
@@ -99,6 +107,7 @@ class Sender {
   HeartbeatPacer heartbeat_;
   std::optional<Made> made_;
   std::array<size_t, kNumTrafficClasses> joined_{};  // how many shared the last datagram of a class
+  mutable std::optional<std::pair<uint64_t, int64_t>> backlog_;  // the queue's revision, and how much waited
   bool heartbeat_went_last_ = false;
   WallPacer pacer_;
   Stats stats_;

@@ -169,7 +169,7 @@ class Party {
     h.x_m = isRobot() ? x_m_ : 0;
     h.budget = static_cast<int32_t>(budget_);
     h.own_digest = isRobot() ? said_.digestOf(robot_) : 0;
-    h.queue_bytes = static_cast<int32_t>(sender_.queue().waitingBytes());
+    h.queue_bytes = static_cast<int32_t>(sender_.backlog());
     h.map_of_state = fuses_ ? state_.beliefs().digest() : 0;
     h.roster = repair_.roster(now_us);
     return {comms::channelName(name_, "HEARTBEAT"), wire::encode(h)};
