@@ -57,6 +57,10 @@ void addLaunchCommand(CLI::App& app, Action& chosen) {
   command->add_option("--profile", o.profile, "words and hyper-parameters: best or paper")
       ->capture_default_str();
   command
+      ->add_option("--bootstrap", o.bootstrap,
+                   "topics.json of a robot of an earlier mission: topics to begin with")
+      ->check(CLI::ExistingFile);
+  command
       ->add_option("--detail", o.detail,
                    "of topics and certainties on the link: fine, or coarse for fewer bytes")
       ->capture_default_str();

@@ -9,6 +9,7 @@
 #include "shoal/comms/link_model.h"
 #include "shoal/comms/seal.h"
 #include "shoal/mapping/local_belief.h"
+#include "shoal/robot/known_topics_file.h"
 
 namespace shoal::console {
 namespace {
@@ -41,6 +42,7 @@ void check(const LaunchOptions& options) {
   if (options.profile != "best" && options.profile != "paper") {
     throw std::invalid_argument("--profile must be best or paper, got \"" + options.profile + "\"");
   }
+  if (!options.bootstrap.empty()) robot::readKnownTopics(options.bootstrap, options.profile);
   if (!mapping::parseDetail(options.detail)) {
     throw std::invalid_argument("--detail must be fine or coarse, got \"" + options.detail + "\"");
   }

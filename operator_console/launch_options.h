@@ -21,6 +21,7 @@ struct LaunchOptions {
   std::string key;             ///< file with the team's key; empty = messages carry no seal
   std::string rate = "max";    ///< mission seconds per wall second, or "max"
   std::string profile = "best";
+  std::string bootstrap;        ///< topics.json to begin with; empty: none
   std::string detail = "fine";  ///< of topics and certainties on the link: fine or coarse
   matching::MatcherOptions matcher = matching::usualMatcher();
   double cell_size_m = 0;  ///< 0 = the world's own

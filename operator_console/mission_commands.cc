@@ -49,6 +49,7 @@ std::vector<std::string> flightArguments(const LaunchOptions& options) {
     if (value != 0) append(arguments, {flag, text(value)});
   }
   if (!options.camera.empty()) append(arguments, {"--camera", options.camera});
+  if (!options.bootstrap.empty()) append(arguments, {"--bootstrap", options.bootstrap});
   return arguments;
 }
 

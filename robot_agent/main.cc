@@ -26,6 +26,7 @@
 #include "shoal/comms/rate_limited_bus.h"
 #include "shoal/mapping/atomic_file.h"
 #include "shoal/mapping/library.h"
+#include "shoal/robot/known_topics_file.h"
 #include "shoal/version.h"
 #include "shoal/world/place.h"
 
@@ -36,7 +37,7 @@ using namespace shoal;  // NOLINT: a main file
 struct Flags {
   std::string robot = "R00", source, url = comms::kDefaultUrl, rate = "1", mission = "shoal",
               log_level = "info";
-  std::string sigma = "auto", link = "clean", checkpoint, camera, source_url, key;
+  std::string sigma = "auto", link = "clean", checkpoint, camera, source_url, key, bootstrap;
   double source_timeout_s = 0, start_s = 0;
   int64_t source_start_us = -1;
   bool period_given = false;
@@ -164,6 +165,11 @@ int run(Flags flags) {
   options.live = isLive(flags);
   if (!flags.checkpoint.empty()) resume(flags, *id);
   options.matcher.sigma = matching::parseSigma(flags.sigma);
+  if (!flags.bootstrap.empty()) {
+    options.explorer.known = robot::readKnownTopics(flags.bootstrap, options.explorer.profile);
+    spdlog::info("{} begins with {} topics of {}", flags.robot, options.explorer.known.size(),
+                 flags.bootstrap);
+  }
 
   const comms::LinkModel model = comms::readLink(flags.link);
 
@@ -225,6 +231,8 @@ int main(int argc, char** argv) {
   app.add_option("--key", f.key, "file with the team's key: only who has it is listened to");
   app.add_option("--profile", f.agent.explorer.profile, "words and hyper-parameters: best or paper")
       ->capture_default_str();
+  app.add_option("--bootstrap", f.bootstrap, "topics.json of an earlier mission: topics to begin with")
+      ->check(CLI::ExistingFile);
   app.add_option("--detail", f.agent.explorer.detail,
                  "of topics and certainties on the link: fine, or coarse for fewer bytes")
       ->transform(CLI::CheckedTransformer(std::map<std::string, mapping::Detail>{

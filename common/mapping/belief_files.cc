@@ -50,7 +50,7 @@ std::string topicsJson(const LocalBelief& belief) {
   return json.dump() + "\n";
 }
 
-void readTopics(const Json& json, LocalBelief& belief) {
+void parseTopics(const Json& json, LocalBelief& belief) {
   belief.version.epoch = json.value("epoch", 0);
   const std::string detail = json.value("detail", std::string(toText(Detail::kFine)));
   if (!parseDetail(detail)) throw std::invalid_argument("no such detail: " + detail);
@@ -103,17 +103,21 @@ void writeBelief(const std::string& folder, const LocalBelief& belief, const wor
   writeFileAtomically(folder + "/topics.json", topicsJson(belief));
 }
 
-LocalBelief readBelief(const std::string& folder, world::RobotId robot, const world::Grid& grid) {
-  LocalBelief belief{.robot = robot, .version = {}, .groups = {}, .topics = {}, .cells = {}};
-  const std::string topics = folder + "/topics.json";
+LocalBelief readTopics(const std::string& path) {
+  LocalBelief belief{.robot = {}, .version = {}, .groups = {}, .topics = {}, .cells = {}};
   try {
-    readTopics(Json::parse(readFile(topics)), belief);
+    parseTopics(Json::parse(readFile(path)), belief);
   } catch (const Json::exception& error) {
-    throw std::runtime_error(topics + ": " + error.what());
+    throw std::runtime_error(path + ": " + error.what());
   } catch (const std::logic_error&) {
-    throw std::runtime_error(topics +
-                             R"(: the keys of "words" must be word numbers, "detail" fine or coarse)");
+    throw std::runtime_error(path + R"(: the keys of "words" must be word numbers, "detail" fine or coarse)");
   }
+  return belief;
+}
+
+LocalBelief readBelief(const std::string& folder, world::RobotId robot, const world::Grid& grid) {
+  LocalBelief belief = readTopics(folder + "/topics.json");
+  belief.robot = robot;
   const std::string map = folder + "/map.csv";
   for (const auto& row : parseCsv(readFile(map), kColumns, map)) {
     belief.cells.push_back({grid.cellOf({toReal(row[0], map), toReal(row[1], map), toReal(row[2], map)}),

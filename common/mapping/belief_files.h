@@ -8,6 +8,10 @@
 
 namespace shoal::mapping {
 
+/// The topics of a robot alone: topics.json at `path`, words ascending. @throws std::runtime_error naming the
+/// file and what is wrong.
+LocalBelief readTopics(const std::string& path);
+
 /// What surprised the robot as surprise.csv: x_m,y_m,z_m,surprise, as it travels (surpriseSteps()); ascending
 /// by cell.
 std::string surpriseCsv(const LocalBelief& belief, const world::Grid& grid);

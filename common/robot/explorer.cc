@@ -33,7 +33,8 @@ Explorer::Explorer(const ExplorerOptions& options)
       words_(vision::makeWordExtractor(options.profile)),
       grid_(options.cell_size_m),
       hyperparameters_(options.hyperparameters.value_or(hyperparametersOf(options.profile))),
-      learner_(topics::makeLearner(hyperparameters_, words_->groups(), options.seed, options.robot)) {
+      learner_(topics::makeLearner(hyperparameters_, words_->groups(), options.seed, options.robot,
+                                   options.known)) {
   if (options.keeps_pictures) book_.emplace(options.cell_size_m);
 }
 

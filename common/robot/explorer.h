@@ -27,6 +27,7 @@ struct ExplorerOptions {
   double cell_size_m = 0.8;                                       ///< edge of a cell, > 0
   int32_t epoch = 0;                                              ///< grows when the robot has lost its disk
   std::optional<topics::LearnerHyperparameters> hyperparameters;  ///< other than the profile's, to experiment
+  std::vector<topics::KnownTopic> known = {};       ///< topics to begin with: known_topics_file.h
   bool keeps_pictures = false;                      ///< of what its topics look like; changes nothing else
   mapping::Detail detail = mapping::Detail::kFine;  ///< of what it tells; changes nothing that it learns
 };

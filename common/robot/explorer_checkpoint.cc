@@ -36,8 +36,8 @@ void Explorer::restore(std::span<const uint8_t> checkpoint) {
   in.demand(last_observation >= -1 && dropped_words >= 0, "its counts are out of range");
   std::vector<int64_t> camera(in.count(8));
   for (int64_t& number : camera) number = in.i64();
-  auto learner =
-      topics::resumeLearner(hyperparameters_, words_->groups(), options_.seed, options_.robot, in.bytes());
+  auto learner = topics::resumeLearner(hyperparameters_, words_->groups(), options_.seed, options_.robot,
+                                       in.bytes(), options_.known);
   std::optional<ExampleBook> book;
   if (const auto pictures = in.bytes(); book_) {
     book.emplace(options_.cell_size_m);

@@ -26,7 +26,7 @@ uint64_t CellLabelModel::identity() const {
   for (const world::WordGroup& group : counts_.groups()) {
     hash = hashCombine(hash, static_cast<uint64_t>(group.size));
   }
-  return hash;
+  return hashCombine(hash, hashOf(known_));
 }
 
 std::vector<uint8_t> CellLabelModel::checkpoint() const {
@@ -67,10 +67,14 @@ std::vector<uint8_t> CellLabelModel::checkpoint() const {
 
 CellLabelModel CellLabelModel::resumed(const CellLabelHyperparameters& hyperparameters,
                                        const std::vector<world::WordGroup>& groups, uint64_t seed,
-                                       world::RobotId robot, std::span<const uint8_t> checkpoint) {
+                                       world::RobotId robot, std::span<const uint8_t> checkpoint,
+                                       const std::vector<KnownTopic>& known) {
   CellLabelModel model(hyperparameters, groups, seed, robot);
+  check(known, model.counts_.vocabularySize(), hyperparameters.max_topics);
+  model.begin(known);
   StateReader in(checkpoint, kKind, kVersion);
-  in.demand(in.u64() == model.identity(), "it is of another robot, seed, vocabulary or hyper-parameters");
+  in.demand(in.u64() == model.identity(),
+            "it is of another robot, seed, vocabulary, hyper-parameters or known topics");
   model.observation_ = in.i32();
   model.time_.us = in.i64();
   model.num_visits_ = in.u64();
@@ -91,8 +95,14 @@ CellLabelModel CellLabelModel::resumed(const CellLabelHyperparameters& hyperpara
               "a topic is a twin of none");
     model.twin_of_[static_cast<size_t>(topic.slot)] = twin;
   }
+  for (const TopicSlots::Named& topic : namesOf(known)) {
+    const auto kept = std::ranges::find(open, topic.slot, &TopicSlots::Named::slot);
+    in.demand(kept != open.end() && kept->id == topic.id, "a known topic is missing");
+  }
   model.slots_.restore(num_ids, open);
   std::vector<int64_t> total(static_cast<size_t>(model.counts_.vocabularySize()));  // of each word
+  for (const KnownTopic& topic : known)
+    for (const world::WordCount& w : topic.words) total[static_cast<size_t>(w.word)] += w.count;
   const size_t num_cells = in.count(52);
   for (size_t i = 0; i < num_cells; ++i) {
     world::CellIndex index;

@@ -52,7 +52,7 @@ void merge(std::vector<world::WordCount>& words, const std::vector<world::WordCo
 
 CellLabelModel::CellLabelModel(const CellLabelHyperparameters& hyperparameters,
                                const std::vector<world::WordGroup>& groups, uint64_t seed,
-                               world::RobotId robot)
+                               world::RobotId robot, const std::vector<KnownTopic>& known)
     : hyperparameters_(checked(hyperparameters)),
       scale_(ConditionalScale::of(hyperparameters.evidence, hyperparameters.coupling)),
       seed_(seed),
@@ -69,6 +69,18 @@ CellLabelModel::CellLabelModel(const CellLabelHyperparameters& hyperparameters,
   twin_of_.resize(stride);
   std::iota(twin_of_.begin(), twin_of_.end(), 0);
   weights_.resize(stride);
+  if (known.empty()) return;
+  check(known, counts_.vocabularySize(), hyperparameters.max_topics);
+  slots_.restore(numIdsOf(known), namesOf(known));
+  begin(known);
+}
+
+void CellLabelModel::begin(const std::vector<KnownTopic>& known) {
+  known_ = known;
+  for (size_t k = 0; k < known.size(); ++k) {
+    counts_.add(known[k].words, static_cast<int32_t>(k));
+    ++cells_of_[k];
+  }
 }
 
 void CellLabelModel::observe(const world::WordsInCells& words) {
@@ -85,7 +97,7 @@ void CellLabelModel::add(const world::WordsInCells& words) {
   observation_ = words.observation;
   time_ = words.time;
   latest_.clear();
-  const bool knows_nothing = cells_.empty();
+  const bool knows_nothing = cells_.empty() && known_.empty();
   const std::vector<double> bits = surprise(words, Surroundings::kGlobal);
   const std::vector<float> surprises = surprise_scale_.of(bits);
   for (size_t i = 0; i < words.cells.size(); ++i) {
@@ -124,7 +136,8 @@ int32_t CellLabelModel::numTopics() const {
 }
 
 int32_t CellLabelModel::topicLimit() const {
-  const int32_t grown = std::max(numCells() / hyperparameters_.cells_per_topic, kFewestTopics);
+  const int32_t fewest = std::max(kFewestTopics, static_cast<int32_t>(known_.size()));
+  const int32_t grown = std::max(numCells() / hyperparameters_.cells_per_topic, fewest);
   return std::min(grown, hyperparameters_.max_topics);
 }
 
@@ -233,7 +246,7 @@ std::vector<double> CellLabelModel::surprise(const world::WordsInCells& words,
                                              Surroundings surroundings) const {
   check(words, counts_.vocabularySize());
   std::vector<double> bits(words.cells.size());
-  if (cells_.empty()) return bits;
+  if (cells_.empty() && known_.empty()) return bits;
   std::vector<int64_t> scores(scores_.size());
   std::vector<int32_t> around(cells_of_.size());
   for (size_t i = 0; i < bits.size(); ++i) {
@@ -264,6 +277,11 @@ std::vector<TopicCounts> CellLabelModel::topics() const {
       topic.words.back().count += counts[k];
       topic.weight += counts[k];
     }
+  }
+  for (size_t k = 0; k < known_.size(); ++k) {
+    TopicCounts& topic = topics[static_cast<size_t>(told[k])];
+    subtract(topic.words, known_[k].words);
+    for (const world::WordCount& w : known_[k].words) topic.weight -= w.count;
   }
   for (int32_t k = 0; k < slots_.end(); ++k) {
     if (!slots_.isOpen(k)) continue;

@@ -7,6 +7,7 @@
 
 #include "shoal/random.h"
 #include "shoal/topics/cell_label_hyperparameters.h"
+#include "shoal/topics/known_topics.h"
 #include "shoal/topics/label_conditional.h"
 #include "shoal/topics/label_counts.h"
 #include "shoal/topics/learner.h"
@@ -53,8 +54,9 @@ namespace shoal::topics {
 class CellLabelModel final : public Learner {
  public:
   /// @throws std::invalid_argument naming a hyperparameter out of range, or groups that leave gaps.
+  ///         Known topics as check() of known_topics.h. Each is a label that never retires.
   CellLabelModel(const CellLabelHyperparameters& hyperparameters, const std::vector<world::WordGroup>& groups,
-                 uint64_t seed, world::RobotId robot);
+                 uint64_t seed, world::RobotId robot, const std::vector<KnownTopic>& known = {});
 
   /// add(words), then refine(visits_per_cell x its cells, rounded down).
   void observe(const world::WordsInCells& words) override;
@@ -92,7 +94,8 @@ class CellLabelModel final : public Learner {
   ///         something else; std::invalid_argument as the constructor.
   static CellLabelModel resumed(const CellLabelHyperparameters& hyperparameters,
                                 const std::vector<world::WordGroup>& groups, uint64_t seed,
-                                world::RobotId robot, std::span<const uint8_t> checkpoint);
+                                world::RobotId robot, std::span<const uint8_t> checkpoint,
+                                const std::vector<KnownTopic>& known = {});
 
   int32_t numCells() const override { return neighborhood_.size(); }
   /// Topics as they are told, twins as one.
@@ -115,6 +118,7 @@ class CellLabelModel final : public Learner {
   };
 
   uint64_t identity() const;
+  void begin(const std::vector<KnownTopic>& known);
   int32_t cellFor(const world::CellIndex& index);
   void redraw(int32_t c, bool words_are_counted);
   float certaintyOf(const LabelledCell& cell, int32_t label) const;
@@ -128,12 +132,13 @@ class CellLabelModel final : public Learner {
   const ConditionalScale scale_;
   const uint64_t seed_;
   const uint64_t robot_;
-  int64_t log_group_size_ = 0;  // mean of log2 over groups, in units of 2^-16
+  std::vector<KnownTopic> known_;  // in the first slots; in the counts, not this robot's own
+  int64_t log_group_size_ = 0;     // mean of log2 over groups, in units of 2^-16
   LabelCounts counts_;
   TopicSlots slots_;
   Neighborhood neighborhood_;
   std::vector<LabelledCell> cells_;  // by number, as in neighborhood_
-  std::vector<int32_t> cells_of_;    // by slot
+  std::vector<int32_t> cells_of_;    // by slot; one more of each known topic
   std::vector<int32_t> twin_of_;  // by slot: the lowest of its twins when last compared; itself when closed
 
   SurpriseScale surprise_scale_;

@@ -132,7 +132,8 @@ HWY_INLINE bool draw(const Table& table, const float* HWY_RESTRICT inverse, Chai
   const float* const prior = chain.prior.data();
   const int32_t* const ahead =
       table.word_counts + chain.tokens[std::min(at + 6, chain.size - 1)].word * stride;
-  for (int32_t k = 0; k < stride && k < 32; k += 16) hwy::Prefetch(ahead + k);
+  const int64_t end = std::min<int64_t>(stride, 32);
+  for (int64_t k = 0; k < end; k += 16) hwy::Prefetch(ahead + k);
 
   // Weights, and vertical sums from the last vector back: suffix[v] is the sum of those after v.
   const VI own = hn::Set(kI, token.slot);

@@ -36,22 +36,24 @@ int32_t sizeOf(const std::vector<world::WordGroup>& groups) {
 
 std::unique_ptr<Learner> makeLearner(const LearnerHyperparameters& hyperparameters,
                                      const std::vector<world::WordGroup>& groups, uint64_t seed,
-                                     world::RobotId robot) {
+                                     world::RobotId robot, const std::vector<KnownTopic>& known) {
   if (const auto* cells = std::get_if<CellLabelHyperparameters>(&hyperparameters)) {
-    return std::make_unique<CellLabelModel>(*cells, groups, seed, robot);
+    return std::make_unique<CellLabelModel>(*cells, groups, seed, robot, known);
   }
-  return std::make_unique<TopicModel>(std::get<Hyperparameters>(hyperparameters), sizeOf(groups), seed,
-                                      robot);
+  return std::make_unique<TopicModel>(std::get<Hyperparameters>(hyperparameters), sizeOf(groups), seed, robot,
+                                      known);
 }
 
 std::unique_ptr<Learner> resumeLearner(const LearnerHyperparameters& hyperparameters,
                                        const std::vector<world::WordGroup>& groups, uint64_t seed,
-                                       world::RobotId robot, std::span<const uint8_t> checkpoint) {
+                                       world::RobotId robot, std::span<const uint8_t> checkpoint,
+                                       const std::vector<KnownTopic>& known) {
   if (const auto* cells = std::get_if<CellLabelHyperparameters>(&hyperparameters)) {
-    return std::make_unique<CellLabelModel>(CellLabelModel::resumed(*cells, groups, seed, robot, checkpoint));
+    return std::make_unique<CellLabelModel>(
+        CellLabelModel::resumed(*cells, groups, seed, robot, checkpoint, known));
   }
   return std::make_unique<TopicModel>(TopicModel::resumed(std::get<Hyperparameters>(hyperparameters),
-                                                          sizeOf(groups), seed, robot, checkpoint));
+                                                          sizeOf(groups), seed, robot, checkpoint, known));
 }
 
 uint64_t fingerprint(const LearnerHyperparameters& hyperparameters) {

@@ -23,13 +23,23 @@ uint32_t parityOf(const world::CellIndex& cell) {
 }  // namespace
 
 TopicModel::TopicModel(const Hyperparameters& hyperparameters, int32_t vocabulary_size, uint64_t seed,
-                       world::RobotId robot)
+                       world::RobotId robot, const std::vector<KnownTopic>& known)
     : hyperparameters_(hyperparameters),
       seed_(seed),
       robot_(static_cast<uint64_t>(number(robot))),
       cell_stream_(hashCombine(hashCombine(seed, kCellStream), robot_)),
       gibbs_(hyperparameters, vocabulary_size),
-      neighbor_counts_(static_cast<size_t>(gibbs_.stride())) {}
+      neighbor_counts_(static_cast<size_t>(gibbs_.stride())) {
+  if (known.empty()) return;
+  check(known, vocabulary_size, hyperparameters.max_topics);
+  known_hash_ = hashOf(known);
+  gibbs_.restoreTopics(numIdsOf(known), namesOf(known));
+  for (const KnownTopic& topic : known) {
+    const auto slot = static_cast<int32_t>(adopted_.size());
+    gibbs_.addCounts(slot, topic.words, 1);
+    adopted_.push_back({slot, topic.words});
+  }
+}
 
 void TopicModel::observe(const world::WordsInCells& words) {
   add(words);
@@ -271,19 +281,12 @@ std::vector<TopicCounts> TopicModel::topics() const {
     }
   }
   for (const Adopted& adopted : adopted_) {  // not this robot's own
-    std::vector<world::WordCount>& words = by_slot[static_cast<size_t>(adopted.slot)].words;
-    auto word = words.begin();
-    for (const world::WordCount& other : adopted.words) {
-      word = std::lower_bound(word, words.end(), other.word,
-                              [](const world::WordCount& w, int32_t id) { return w.word < id; });
-      word->count -= other.count;
-    }
+    subtract(by_slot[static_cast<size_t>(adopted.slot)].words, adopted.words);
   }
   std::vector<TopicCounts> topics;
   for (int32_t k = 0; k < slots.end(); ++k) {
     if (!slots.isOpen(k)) continue;
     TopicCounts topic = std::move(by_slot[static_cast<size_t>(k)]);
-    std::erase_if(topic.words, [](const world::WordCount& w) { return w.count == 0; });
     topic.id = slots.id(k);
     topic.created = slots.created(k);
     for (const world::WordCount& w : topic.words) topic.weight += w.count;

@@ -9,6 +9,7 @@
 #include "shoal/topics/cell_words.h"
 #include "shoal/topics/gibbs.h"
 #include "shoal/topics/hyperparameters.h"
+#include "shoal/topics/known_topics.h"
 #include "shoal/topics/learner.h"
 #include "shoal/topics/neighborhood.h"
 #include "shoal/topics/surprise_scale.h"
@@ -39,8 +40,9 @@ struct AdoptedTopic {
 class TopicModel final : public Learner {
  public:
   /// @throws std::invalid_argument naming a hyperparameter out of range (check()), or vocabulary_size < 1.
+  ///         Known topics as check() of known_topics.h.
   TopicModel(const Hyperparameters& hyperparameters, int32_t vocabulary_size, uint64_t seed,
-             world::RobotId robot);
+             world::RobotId robot, const std::vector<KnownTopic>& known = {});
 
   /// add(words), then refine(resamples_per_observation). An image without words still refines the past.
   /// @throws as add().
@@ -58,8 +60,9 @@ class TopicModel final : public Learner {
   void refine(int64_t resamples);
 
   /// Takes over what other robots know: their counts are added to this robot's in the conditional, in place
-  /// of those adopted before. Topics that are new here get a slot and an id of their own while there are free
-  /// slots, and are left out otherwise. snapshot() goes on telling this robot's own counts.
+  /// of those adopted before, and of known ones. Topics that are new here get a slot and an id of their own
+  /// while there are free slots, and are left out otherwise. snapshot() goes on telling this robot's own
+  /// counts.
   /// @returns the id of each topic here, in order; -1 where it was left out.
   /// @throws std::invalid_argument for an `own` that is not an open topic, or words out of order or range.
   /// Source: K. Doherty, G. Flaspohler, N. Roy, Y. Girdhar, ICRA 2018: merge and redistribute.
@@ -87,7 +90,8 @@ class TopicModel final : public Learner {
   /// @throws std::runtime_error for bytes that are damaged, of another version, or of a model that was made
   ///         with something else; std::invalid_argument as the constructor.
   static TopicModel resumed(const Hyperparameters& hyperparameters, int32_t vocabulary_size, uint64_t seed,
-                            world::RobotId robot, std::span<const uint8_t> checkpoint);
+                            world::RobotId robot, std::span<const uint8_t> checkpoint,
+                            const std::vector<KnownTopic>& known = {});
 
   int32_t numCells() const override { return neighborhood_.size(); }
   int32_t numTopics() const override { return gibbs_.slots().numOpen(); }
@@ -122,6 +126,7 @@ class TopicModel final : public Learner {
   const Hyperparameters hyperparameters_;
   const uint64_t seed_;
   const uint64_t robot_;
+  uint64_t known_hash_ = 0;     // of the topics it began with
   const uint64_t cell_stream_;  // of random numbers
   Gibbs gibbs_;
   Neighborhood neighborhood_;

@@ -21,7 +21,7 @@ constexpr uint32_t kVersion = 2;
 uint64_t TopicModel::identity() const {
   uint64_t hash = hashCombine(fingerprint(hyperparameters_), seed_);
   hash = hashCombine(hash, robot_);
-  return hashCombine(hash, static_cast<uint64_t>(gibbs_.vocabularySize()));
+  return hashCombine(hashCombine(hash, static_cast<uint64_t>(gibbs_.vocabularySize())), known_hash_);
 }
 
 std::vector<uint8_t> TopicModel::checkpoint() const {
@@ -68,11 +68,14 @@ std::vector<uint8_t> TopicModel::checkpoint() const {
 }
 
 TopicModel TopicModel::resumed(const Hyperparameters& hyperparameters, int32_t vocabulary_size, uint64_t seed,
-                               world::RobotId robot, std::span<const uint8_t> checkpoint) {
-  TopicModel model(hyperparameters, vocabulary_size, seed, robot);
+                               world::RobotId robot, std::span<const uint8_t> checkpoint,
+                               const std::vector<KnownTopic>& known) {
+  TopicModel model(hyperparameters, vocabulary_size, seed, robot);  // what it knew is among what was adopted
+  model.known_hash_ = hashOf(known);
   const TopicSlots& slots = model.gibbs_.slots();
   StateReader in(checkpoint, kKind, kVersion);
-  in.demand(in.u64() == model.identity(), "it is of another robot, seed, vocabulary or hyper-parameters");
+  in.demand(in.u64() == model.identity(),
+            "it is of another robot, seed, vocabulary, hyper-parameters or known topics");
   model.observation_ = in.i32();
   model.time_.us = in.i64();
   model.num_visits_ = in.u64();
