@@ -35,7 +35,7 @@ world::WordsInCells image() {
 
 struct OfCells {
   static constexpr const char* kKind = "shoalCLM";
-  static constexpr uint32_t kVersion = 2;
+  static constexpr uint32_t kVersion = 3;
   static CellLabelModel made() { return {{}, kGroups, 7, world::RobotId{3}}; }
   static CellLabelModel resumed(std::span<const uint8_t> bytes) {
     return CellLabelModel::resumed({}, kGroups, 7, world::RobotId{3}, bytes);
@@ -44,7 +44,7 @@ struct OfCells {
 
 struct OfWords {
   static constexpr const char* kKind = "shoalTPM";
-  static constexpr uint32_t kVersion = 1;
+  static constexpr uint32_t kVersion = 2;
   static TopicModel made() { return {{}, 10, 7, world::RobotId{3}}; }
   static TopicModel resumed(std::span<const uint8_t> bytes) {
     return TopicModel::resumed({}, 10, 7, world::RobotId{3}, bytes);

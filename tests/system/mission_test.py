@@ -246,7 +246,7 @@ class Mission(unittest.TestCase):
         at = ask("at", first[0], first[1], "--run", self.a)
         check_schema("at", at)
         self.assertIn(int(first[3]), [cell["label"] for cell in at["cells"]])
-        # A recording holds certainties in steps of 1/63, and so does the map: everything is equal.
+        # A recording holds certainties in ninths, and so does the map: everything is equal.
         self.assertEqual(at["cells"], ask("at", first[0], first[1], "--log", log)["cells"])
         self.assertEqual(ask("at", "1e5", "1e5", "--run", self.a)["cells"], [])
 
@@ -307,19 +307,32 @@ class Mission(unittest.TestCase):
         run(CONSOLE, "export", "--format", "png", "--out", png, "--run", self.a)
         self.assertEqual(read(png)[:4], b"\x89PNG")
 
+    def test_surprises_are_the_same_of_the_run_and_of_its_recording(self):
+        of_run = ask("surprises", "--run", self.a, "--least", "1.5")
+        check_schema("surprises", of_run)
+        self.assertEqual(of_run, ask("surprises", "--log", os.path.join(self.a, "mission.lcmlog"), "--least", "1.5"))
+        rows = list(csv.DictReader(read(os.path.join(self.a, "surprise.csv")).decode().splitlines()))
+        self.assertEqual(of_run["cells"], len(rows))
+        self.assertEqual(sum(place["cells"] for place in of_run["places"]), len(rows))
+        if rows:
+            self.assertEqual(of_run["places"][0]["surprise"], max(float(row["surprise"]) for row in rows))
+        table = run(CONSOLE, "surprises", "--run", self.a, "--csv", "--least", "0").stdout.replace("\r", "")
+        self.assertEqual(table.encode(), read(os.path.join(self.a, "surprise.csv")))
+
     def test_a_recording_alone_gives_the_same_bytes(self):
         out = os.path.join(self.top, "replayed")
         answer = ask("replay", os.path.join(self.a, "mission.lcmlog"), "--out", out)
         check_schema("replay", answer)
         self.assertEqual((answer["whole"], answer["lacking"]), (True, []))
         self.assertEqual(answer["digest"], self.summary["digest"])
-        for path in ["global_map.csv", "labels.csv"]:
+        for path in ["global_map.csv", "labels.csv", "surprise.csv"]:
             self.assertEqual(read(os.path.join(out, path)), read(os.path.join(self.a, path)), path)
-        for robot in self.summary["robots"]:  # certainties travel in steps of 1/63
+        for robot in self.summary["robots"]:  # certainties travel in ninths
+            self.assertEqual(*(read(os.path.join(top, "robots", robot, "surprise.csv")) for top in (out, self.a)), robot)
             told, own = (list(csv.reader(read(os.path.join(top, "robots", robot, "map.csv")).decode().splitlines()))
                          for top in (out, self.a))
             self.assertEqual([row[:5] for row in told], [row[:5] for row in own])
-            self.assertTrue(all(abs(float(t[5]) - float(o[5])) < 0.5 / 63 + 1e-4 for t, o in zip(told[1:], own[1:])))
+            self.assertTrue(all(abs(float(t[5]) - float(o[5])) < 0.5 / 9 + 1e-4 for t, o in zip(told[1:], own[1:])))
         self.assertEqual(sorted(answer["files"]), sorted(os.path.relpath(os.path.join(folder, name), out)
                                                          for folder, _, names in os.walk(out) for name in names))
 
