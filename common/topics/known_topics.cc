@@ -30,7 +30,8 @@ void check(const std::vector<KnownTopic>& known, int32_t vocabulary_size, int32_
       if (w.word <= before || w.word >= vocabulary_size || w.count <= 0)
         refuse(name + ": words are out of order or range, at word " + std::to_string(w.word));
       before = w.word;
-      if ((left -= w.count) < 0) refuse("more than 2^30 words");
+      left -= w.count;
+      if (left < 0) refuse("more than 2^30 words");
     }
   }
 }
