@@ -16,10 +16,6 @@ namespace {
 constexpr uint64_t kCellStream = 0x746f706963730001;      // "topics", 1
 constexpr uint64_t kScheduleStream = 0x746f706963730002;  // "topics", 2
 
-uint32_t parityOf(const world::CellIndex& cell) {
-  return (static_cast<uint32_t>(cell.x) ^ static_cast<uint32_t>(cell.y) ^ static_cast<uint32_t>(cell.z)) & 1U;
-}
-
 }  // namespace
 
 TopicModel::TopicModel(const Hyperparameters& hyperparameters, int32_t vocabulary_size, uint64_t seed,
@@ -72,20 +68,11 @@ void TopicModel::add(const world::WordsInCells& words) {
     const std::vector<Token> fresh = tokens(cell_words);
     cell.tokens.insert(cell.tokens.end(), fresh.begin(), fresh.end());
   }
-  // Cells whose coordinates add up to an even number, then the others: none of either adjoins another.
+  // In the order of the image, so that most cells find a neighbour whose words have topics already: drawing
+  // every other cell first costs 3 % of perplexity.
   std::vector<Visit> first_draws, first_visits;
-  for (const uint32_t parity : {0U, 1U}) {
-    for (size_t i = 0; i < latest_.size(); ++i) {
-      if (parityOf(words.cells[i].cell) == parity) {
-        first_draws.push_back(nextVisitOf(latest_[i], num_tokens[i]));
-      }
-    }
-  }
-  for (const uint32_t parity : {0U, 1U}) {
-    for (int32_t c = num_known; c < numCells(); ++c) {
-      if (parityOf(cells_[static_cast<size_t>(c)].index) == parity) first_visits.push_back(nextVisitOf(c, 0));
-    }
-  }
+  for (size_t i = 0; i < latest_.size(); ++i) first_draws.push_back(nextVisitOf(latest_[i], num_tokens[i]));
+  for (int32_t c = num_known; c < numCells(); ++c) first_visits.push_back(nextVisitOf(c, 0));
   run(first_draws);
   run(first_visits);
   for (const Visit& visit : first_visits) {

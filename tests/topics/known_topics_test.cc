@@ -51,11 +51,9 @@ world::WordsInCells row(int32_t observation, int32_t word) {
   return words;
 }
 
-// @param least  Cells, of the twelve of known kinds, that are told as what is known. TopicModel draws each
-// word for
-//               itself, and may make a topic of a few.
+// How many cells, of the twelve of known kinds, are told as what is known.
 template <typename Model>
-void expectNamesFromTheFirstImage(Model model, int least) {
+int numNamedFromTheFirstImage(Model model) {
   for (const auto& [observation, word] : {std::pair{0, 10}, {1, 0}, {2, 15}})
     model.observe(row(observation, word));
   const Snapshot snapshot = model.snapshot();
@@ -67,26 +65,28 @@ void expectNamesFromTheFirstImage(Model model, int least) {
     // An id that was not known was never used.
     EXPECT_TRUE(is_known ? cell.cell.y < 8 : number(cell.topic) >= 8) << number(cell.topic);
   }
-  EXPECT_GE(named, least);
   int64_t words = 0;  // told are its own alone
   for (const TopicCounts& topic : snapshot.topics) {
     words += topic.weight;
     for (const world::WordCount& w : topic.words) EXPECT_LE(w.count, 6 * 7);
   }
   EXPECT_EQ(words, 3 * 6 * 12);
+  return named;
 }
 
+// TopicModel draws each word for itself: one chain in twelve calls a whole row something else.
 TEST(KnownTopicsTest, NameWhatIsSeenFromTheFirstImageOn) {
-  for (uint64_t seed = 1; seed <= 5; ++seed) {
-    expectNamesFromTheFirstImage(
-        TopicModel({.max_topics = 4, .alpha = 0.1, .beta = 0.1, .resamples_per_observation = 2000}, 20, seed,
-                   RobotId{0}, kTwo),
-        8);
-    expectNamesFromTheFirstImage(
-        CellLabelModel({.max_topics = 4, .cells_per_topic = 3}, {{.name = "all", .first = 0, .size = 20}},
-                       seed, RobotId{0}, kTwo),
-        12);
+  int num_good = 0;
+  for (uint64_t seed = 1; seed <= 40; ++seed) {
+    num_good += numNamedFromTheFirstImage(TopicModel(
+                    {.max_topics = 4, .alpha = 0.1, .beta = 0.1, .resamples_per_observation = 2000}, 20, seed,
+                    RobotId{0}, kTwo)) >= 8;
+    EXPECT_EQ(numNamedFromTheFirstImage(CellLabelModel({.max_topics = 4, .cells_per_topic = 3},
+                                                       {{.name = "all", .first = 0, .size = 20}}, seed,
+                                                       RobotId{0}, kTwo)),
+              12);
   }
+  EXPECT_GE(num_good, 34);
 }
 
 // What was learnt in one flight names the same classes in the next, over another map of them.
