@@ -48,7 +48,7 @@ struct Mission {
                    {0, 5},
                    0,
                    1,
-                   mapping::CertaintyPart{{{{1, -2, 0}, 63}, {{2, -2, 0}, 21}}}};
+                   mapping::CertaintyPart{{{{1, -2, 0}, 63}, {{2, -2, 0}, 21, 20}}}};
     for (const mapping::Piece* piece : {&topic, &labels, &certainties}) beliefs.apply(*piece);
     map = mapping::fuse(beliefs, {});
 
@@ -197,7 +197,14 @@ TEST(ReplayTest, RebuildsTheTablesFromTheRecordingAlone) {
   std::filesystem::remove_all(out);
   const Replay result = replay(mission.write(), out, {});
   EXPECT_TRUE(result.isWhole());
-  EXPECT_EQ(result.files, (Lines{"global_map.csv", "labels.csv", "global_map.png", "robots/R00/map.csv"}));
+  EXPECT_EQ(result.files, (Lines{"global_map.csv", "labels.csv", "surprise.csv", "global_map.png",
+                                 "robots/R00/map.csv", "robots/R00/surprise.csv"}));
+  EXPECT_EQ(mapping::readFile(out + "/robots/R00/surprise.csv"),
+            "x_m,y_m,z_m,surprise\n"
+            "1.000,-1.000,0.000,2.500\n");
+  EXPECT_EQ(mapping::readFile(out + "/surprise.csv"),
+            "x_m,y_m,z_m,label,robot,seen_s,surprise\n"
+            "1.000,-1.000,0.000,4,R00,3.000,2.500\n");
   EXPECT_EQ(mapping::readFile(out + "/robots/R00/map.csv"),
             "x_m,y_m,z_m,topic,seen_s,certainty\n"
             "0.500,-1.000,0.000,4,2.000,1.0000\n"
