@@ -56,6 +56,10 @@ constexpr size_t kSmallDatagramBytes = 400;
 // images, and at the end. A count, so that what is said does not depend on how fast the robot flew.
 constexpr size_t kPublishEvery = 5;
 
+// Bricks of labels or certainties told at a time in flight, so that it takes no longer on large maps: all of
+// what a robot of a team usually holds. What has changed without being seen waits its turn, and for the end.
+constexpr size_t kMostBricks = 128;
+
 // A multiple of that. What was flown since the last checkpoint is flown again after a crash, with the same
 // result; a live source cannot be, so then every word that is said stands in a checkpoint first.
 constexpr size_t kSaveEvery = 25;
@@ -181,7 +185,7 @@ void Agent::fly() {
     takeIn(*observation);
     passTimeUntil(clock_.now());
   }
-  publish();
+  publish(mapping::BeliefChanges::kAll);
   save();
   if (stopRequested()) return;
   phase_ = wire::Phase::kLanded;
@@ -206,7 +210,7 @@ void Agent::takeIn(const world::Observation& observation) {
   belief_ = explorer_.belief();
   path_.push_back({observation.time, observation.world_from_camera});
   if (path_.size() % kPublishEvery == 0) {
-    publish();
+    publish(kMostBricks);
     sharpenWanted();
   }
   if (path_.size() % (options_.live ? kPublishEvery : kSaveEvery) == 0) save();
@@ -220,12 +224,13 @@ void Agent::takeIn(const world::Observation& observation) {
 }
 
 // Offers what has changed since the last time.
-void Agent::publish() {
+void Agent::publish(size_t most_bricks) {
   if (path_.empty()) return;
-  for (const mapping::Piece& whole : changes_.update(belief_)) {
+  for (const mapping::Piece& whole : changes_.update(belief_, most_bricks)) {
     const std::string channel = comms::channelName(name_, wire::channelKind(wire::kindOf(whole)));
-    const auto parts = wire::cutToFit(whole, mostBytes(channel, options_.budget, bus_.trailerBytes()));
-    for (const mapping::Piece& part : parts) say(part);
+    const size_t most = mostBytes(channel, options_.budget, bus_.trailerBytes());
+    auto parts = wire::encodeToFit(whole, most, options_.mission);
+    for (wire::EncodedPart& each : parts) say(each.part, std::move(each.message));
     int32_t& offered = num_parts_[whole.key];
     for (auto stale = static_cast<int32_t>(parts.size()); stale < offered; ++stale) {
       sender_.forget(queueKey(whole.key, stale));
@@ -242,10 +247,12 @@ void Agent::publish() {
   }
 }
 
-void Agent::say(const mapping::Piece& part) {
+void Agent::say(const mapping::Piece& part) { say(part, wire::encode(part, options_.mission, {})); }
+
+void Agent::say(const mapping::Piece& part, wire::Bytes message) {
   own_.apply(part);
   others_.apply(part);
-  offer(part);
+  offer(part, std::move(message));
 }
 
 // Bricks that wait share datagrams.
@@ -261,11 +268,10 @@ std::optional<comms::Packet> Agent::join(std::span<const comms::SendQueue::Next>
   return comms::Packet{together.front().packet->channel, std::move(*bytes)};
 }
 
-void Agent::offer(const mapping::Piece& part) {
+void Agent::offer(const mapping::Piece& part, wire::Bytes message) {
   const std::string key = queueKey(part.key, part.part);
   sender_.offer(trafficOf(part.key.kind), key,
-                {comms::channelName(name_, wire::channelKind(wire::kindOf(part))),
-                 wire::encode(part, options_.mission, world::Timestamp{})});
+                {comms::channelName(name_, wire::channelKind(wire::kindOf(part))), std::move(message)});
   said_.insert_or_assign(key, part);
 }
 
@@ -303,19 +309,19 @@ void Agent::resume() {
   path_ = c.path;
   if (!path_.empty()) {
     belief_ = explorer_.belief();
-    changes_.update(belief_);  // all of it has been offered
+    changes_.restore(belief_, c.untold);
   }
   for (const Checkpoint::Said& said : c.said) {
     own_.apply(said.piece);
     others_.apply(said.piece);
     num_parts_[said.piece.key] = said.piece.num_parts;
-    if (said.waits) offer(said.piece);
+    if (said.waits) offer(said.piece, wire::encode(said.piece, options_.mission, {}));
   }
   spdlog::info("goes on from a checkpoint after {} observations, at {:.1f} s", path_.size(),
                static_cast<double>(options_.start_us) * 1e-6);
 }
 
-// To be called when all that changed has been offered, and before any of it is sent.
+// To be called when what changed has been offered, and before any of it is sent.
 void Agent::save() {
   if (options_.checkpoint_dir.empty()) return;
   Checkpoint c{.mission = options_.mission,
@@ -325,6 +331,7 @@ void Agent::save() {
                .wall_us = wallUs(),
                .explorer = explorer_.checkpoint(),
                .said = {},
+               .untold = changes_.waiting(),
                .path = path_};
   own_.visit([&](const mapping::Piece& piece) {
     c.said.push_back({piece, sender_.queue().isWaiting(queueKey(piece.key, piece.part))});

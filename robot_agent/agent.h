@@ -59,9 +59,10 @@ class Agent {
   void resume();
   void save();
   void takeIn(const world::Observation& observation);
-  void publish();
+  void publish(size_t most_bricks);
   void say(const mapping::Piece& part);
-  void offer(const mapping::Piece& part);
+  void say(const mapping::Piece& part, wire::Bytes message);
+  void offer(const mapping::Piece& part, wire::Bytes message);
   void sharpenWanted();
   void passTimeUntil(int64_t to_us);
   void listen(int timeout_ms);

@@ -16,7 +16,7 @@
 namespace shoal::robot_agent {
 namespace {
 
-constexpr std::string_view kMagic = "SHOALRC1";  // the last letter is the version
+constexpr std::string_view kMagic = "SHOALRC2";  // the last letter is the version
 
 uint64_t hashOf(std::span<const uint8_t> bytes) {
   uint64_t hash = bytes.size();
@@ -56,6 +56,17 @@ Checkpoint read(wire::ByteReader& in, const std::string& path) {
     for (const mapping::Piece& piece : *pieces) c.said.push_back({piece, waits});
   }
   for (uint64_t n = in.varint(); n > 0 && !in.failed(); --n) {
+    mapping::BeliefChanges::Waiting waiting;
+    waiting.key.robot = c.robot;
+    waiting.key.kind = static_cast<mapping::PieceKind>(in.bigEndian(1));
+    if (waiting.key.kind != mapping::PieceKind::kBrick && waiting.key.kind != mapping::PieceKind::kCertainty)
+      throw damaged("what waits is no brick");
+    for (int32_t& i : waiting.key.index) i = static_cast<int32_t>(in.bigEndian(4));
+    waiting.told_hash = in.bigEndian(8);
+    waiting.since = static_cast<int32_t>(in.bigEndian(4));
+    c.untold.push_back(waiting);
+  }
+  for (uint64_t n = in.varint(); n > 0 && !in.failed(); --n) {
     mapping::StampedPose pose;
     pose.time.us = number64(in);
     for (Eigen::Index row = 0; row < 3; ++row)
@@ -83,6 +94,13 @@ void writeCheckpoint(const std::string& path, const Checkpoint& c) {
   for (const Checkpoint::Said& said : c.said) {
     out.push_back(said.waits ? 1 : 0);
     putBlob(out, wire::encode(said.piece, c.mission, {}));
+  }
+  wire::putVarint(out, c.untold.size());
+  for (const mapping::BeliefChanges::Waiting& waiting : c.untold) {
+    out.push_back(static_cast<uint8_t>(waiting.key.kind));
+    for (const int32_t i : waiting.key.index) wire::putBigEndian(out, static_cast<uint32_t>(i), 4);
+    wire::putBigEndian(out, waiting.told_hash, 8);
+    wire::putBigEndian(out, static_cast<uint32_t>(waiting.since), 4);
   }
   wire::putVarint(out, c.path.size());
   for (const mapping::StampedPose& pose : c.path) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "shoal/mapping/belief_pieces.h"
 #include "shoal/mapping/piece.h"
 #include "shoal/mapping/poses_file.h"
 #include "shoal/world/ids.h"
@@ -26,8 +27,9 @@ struct Checkpoint {
     mapping::Piece piece;
     bool waits = false;  ///< not sent yet
   };
-  std::vector<Said> said;                  ///< the usable parts of the newest versions
-  std::vector<mapping::StampedPose> path;  ///< one pose an observation
+  std::vector<Said> said;                               ///< the usable parts of the newest versions
+  std::vector<mapping::BeliefChanges::Waiting> untold;  ///< what had changed and was not to be said yet
+  std::vector<mapping::StampedPose> path;               ///< one pose an observation
 };
 
 /// The file of a robot's checkpoint in a folder.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <vector>
@@ -15,15 +16,44 @@ namespace shoal::mapping {
 std::vector<Piece> wholePieces(const LocalBelief& belief);
 
 /// Turns a robot's successive beliefs into what changed. A piece's version is the observation at which its
-/// content last changed, so resending changes nothing.
+/// content was last seen to have changed, so resending changes nothing.
 class BeliefChanges {
  public:
-  /// Whole pieces whose content differs from the last belief, ascending by key. A topic that is gone comes as
+  /// A brick that has changed and was not told yet.
+  struct Waiting {
+    PieceKey key;
+    uint64_t told_hash = 0;  ///< of what was told of it last; 0: nothing
+    int32_t since = 0;       ///< the observation at which it began to wait
+    bool operator==(const Waiting&) const = default;
+  };
+  static constexpr size_t kAll = ~size_t{0};
+
+  /// Whole pieces whose content differs from what was told, ascending by key. A topic that is gone comes as
   /// a retired piece (weight 0, no words). Beliefs must be of one robot with versions that grow.
-  std::vector<Piece> update(const LocalBelief& belief);
+  ///
+  /// A model that learns changes its mind everywhere, and to tell all of a large map takes long: of bricks of
+  /// labels and of certainties at most `most_bricks` come, first those that were seen since the last call,
+  /// then those that have waited longest. The others wait; with kAll none does.
+  ///
+  /// Cost: O(cells) to find out, a few nanoseconds each; what is told, all that it holds.
+  std::vector<Piece> update(const LocalBelief& belief, size_t most_bricks = kAll);
+
+  /// Ascending by key.
+  std::vector<Waiting> waiting() const;
+
+  /// As if all of `belief` had just been told but these.
+  void restore(const LocalBelief& belief, const std::vector<Waiting>& waiting);
 
  private:
-  std::map<PieceKey, uint64_t> content_hash_;  // of the content alone, version left out
+  struct Told {
+    uint64_t hash = 0;  // of the content alone, version left out
+    int32_t since = kNotWaiting;
+  };
+  static constexpr int32_t kNotWaiting = -1;
+  std::vector<Piece> changedTopics(const LocalBelief& belief);
+
+  std::map<PieceKey, Told> told_;
+  world::Timestamp seen_until_;  // by the belief before
 };
 
 }  // namespace shoal::mapping

@@ -17,15 +17,24 @@ constexpr std::array<int32_t, 33> kSquash = {22,    36,    60,    98,    162,   
                                              47911, 53581, 57724, 60565, 62428, 63615, 64357, 64816, 65097,
                                              65269, 65374, 65438, 65476, 65500, 65514};
 
-std::array<int16_t, 4096> makeStretch() {
+constexpr uint32_t squashed(int32_t odds) {
+  odds = std::clamp(odds, -kMaxOdds, kMaxOdds) + 2048;
+  const auto i = static_cast<size_t>(odds >> 7);
+  const int32_t rest = odds & 127;
+  return static_cast<uint32_t>((kSquash[i] * (128 - rest) + kSquash[i + 1] * rest + 64) >> 7);
+}
+
+constexpr auto kStretch = [] {
   std::array<int16_t, 4096> table{};
   int32_t odds = -kMaxOdds;
   for (uint32_t p = 0; p < table.size(); ++p) {  // the least odds that reach the middle of the step
-    while (odds < kMaxOdds && squash(odds) < p * 16 + 8) ++odds;
+    while (odds < kMaxOdds && squashed(odds) < p * 16 + 8) ++odds;
     table[p] = static_cast<int16_t>(odds);
   }
   return table;
-}
+}();
+
+constexpr int32_t stretched(uint32_t p) { return kStretch[std::min<uint32_t>(p >> 4, 4095)]; }
 
 // How far an estimate is believed that has seen so many bits, of 256.
 constexpr std::array<int32_t, 8> kBelief = {0, 110, 160, 190, 210, 225, 236, 245};
@@ -34,23 +43,9 @@ constexpr int kLearningShift = 15;
 
 }  // namespace
 
-uint32_t squash(int32_t odds) {
-  odds = std::clamp(odds, -kMaxOdds, kMaxOdds) + 2048;
-  const auto i = static_cast<size_t>(odds >> 7);
-  const int32_t rest = odds & 127;
-  return static_cast<uint32_t>((kSquash[i] * (128 - rest) + kSquash[i + 1] * rest + 64) >> 7);
-}
+uint32_t squash(int32_t odds) { return squashed(odds); }
 
-int32_t stretch(uint32_t p) {
-  static const std::array<int16_t, 4096> table = makeStretch();
-  return table[std::min<uint32_t>(p >> 4, 4095)];
-}
-
-void ContextBit::update(int bit) {
-  const int32_t target = bit != 0 ? 65535 : 0;
-  one = static_cast<uint16_t>(one + (target - one) * 2 / (2 * seen + 3));
-  if (seen < kMemory) ++seen;
-}
+int32_t stretch(uint32_t p) { return stretched(p); }
 
 BitMixer::BitMixer(size_t num_contexts, size_t num_sets)
     : num_contexts_(num_contexts), weights_(num_contexts * num_sets, 65536 / 3) {
@@ -66,11 +61,11 @@ int BitMixer::code(Coder& coder, std::span<ContextBit* const> contexts, size_t s
   for (size_t k = 0; k < num_contexts_; ++k) {
     const ContextBit& context = *contexts[k];
     const int32_t belief = context.seen < kBelief.size() ? kBelief[context.seen] : 256;
-    odds[k] = stretch(context.one) * belief / 256;
+    odds[k] = stretched(context.one) * belief / 256;
     sum += int64_t{weights[k]} * odds[k];
   }
   const auto mixed = static_cast<int32_t>(std::clamp<int64_t>(sum / 65536, -kMaxOdds, kMaxOdds));
-  const auto one = static_cast<int32_t>(squash(mixed));
+  const auto one = static_cast<int32_t>(squashed(mixed));
   bit = coder.bit(static_cast<uint32_t>(65536 - std::clamp(one, 32, 65504)), bit);
   const int32_t error = (bit != 0 ? 65536 : 0) - one;
   for (size_t k = 0; k < num_contexts_; ++k) {

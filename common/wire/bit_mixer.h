@@ -20,11 +20,16 @@ uint32_t squash(int32_t odds);
 struct ContextBit {
   uint16_t one = 1u << 15;  ///< P(1) x 65536
   uint8_t seen = 0;         ///< bits seen, at most kMemory
+  uint8_t generation = 0;   ///< ContextTable's alone
 
   static constexpr int kMemory = 250;
 
   /// Moves 1 / (seen + 1.5) of the way to the bit.
-  void update(int bit);
+  void update(int bit) {
+    const int32_t target = bit != 0 ? 65535 : 0;
+    one = static_cast<uint16_t>(one + (target - one) * 2 / (2 * seen + 3));
+    if (seen < kMemory) ++seen;
+  }
 };
 
 /// Makes one probability of those of several contexts by logistic mixing (Mahoney, PAQ6, 2005): a weighted

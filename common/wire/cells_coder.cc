@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <numeric>
 
+#include "shoal/wire/context_table.h"
 #include "shoal/wire/range_coder.h"
 
 namespace shoal::wire {
@@ -55,7 +56,7 @@ class Questions {
         for (size_t known = 0; known < 4; ++known) {
           const auto one = static_cast<uint16_t>(rank == 0 ? 12000 + share * 3350
                                                            : 6000 + share * (rank == 1 ? 3300 : 3000));
-          shares_[(rank * kShares + share) * 4 + known] = {one, 2};
+          shares_[(rank * kShares + share) * 4 + known] = {.one = one, .seen = 2};
         }
       }
     }
@@ -86,11 +87,8 @@ class Questions {
 
  private:
   std::vector<ContextBit> shares_;
-  std::vector<ContextBit> inner_ = std::vector<ContextBit>(4 * 81 * 81);
-  std::vector<ContextBit> names_ = std::vector<ContextBit>(32 * 81 * 4);
-  std::vector<ContextBit> rings_ = std::vector<ContextBit>(4 * 81 * 81);
-  std::vector<ContextBit> surprised_ = std::vector<ContextBit>(4 * kShares * 16);
-  std::vector<ContextBit> outers_ = std::vector<ContextBit>(4 * 9 * 81 * 9);
+  ContextTable inner_{size_t{4} * 81 * 81}, names_{size_t{32} * 81 * 4}, rings_{size_t{4} * 81 * 81};
+  ContextTable surprised_{4 * kShares * 16}, outers_{size_t{4} * 9 * 81 * 9};
   BitMixer mixer_;
 };
 

@@ -39,7 +39,7 @@ GeometryCoder::GeometryCoder()
   // Before anything was seen: a cell is probably as those west and south of it.
   for (size_t context = 0; context < alike_.size(); ++context) {
     constexpr std::array<uint16_t, 4> kOne = {2000, 26000, 50000, 63500};
-    alike_[context] = {kOne[static_cast<size_t>(std::popcount(context & 7))], 3};
+    alike_[context] = {.one = kOne[static_cast<size_t>(std::popcount(context & 7))], .seen = 3};
   }
 }
 

@@ -337,6 +337,21 @@ std::vector<Piece> cutToFit(const Piece& whole, size_t max_payload) {
   return cut(run(certainty), certainty.cells.size(), kMaxBrickCells);
 }
 
+std::vector<EncodedPart> encodeToFit(const Piece& whole, size_t max_payload, int32_t mission) {
+  const auto* topic = std::get_if<TopicPart>(&whole.content);
+  const bool may_fit = whole.num_parts == 1 && (topic == nullptr || topic->words.size() <= kMaxWordsPerPart);
+  if (may_fit && fault(whole).empty()) {
+    Bytes message = encodeValid(whole, mission, {});
+    if (message.size() <= std::min(max_payload, kMaxMessageBytes)) return {{whole, std::move(message)}};
+  }
+  std::vector<EncodedPart> parts;
+  for (Piece& part : cutToFit(whole, max_payload)) {
+    Bytes message = encode(part, mission, {});
+    parts.push_back({std::move(part), std::move(message)});
+  }
+  return parts;
+}
+
 Result<std::vector<Piece>> decodePieces(MessageKind kind, std::span<const uint8_t> bytes) {
   auto decoded = [&]() -> Result<std::vector<Piece>> {
     switch (kind) {

@@ -51,6 +51,16 @@ std::optional<Bytes> encodeTogether(std::span<const mapping::Piece* const> piece
 ///         take 226 parts.
 std::vector<mapping::Piece> cutToFit(const mapping::Piece& whole, size_t max_payload);
 
+/// A part, and the message that encode() makes of it.
+struct EncodedPart {
+  mapping::Piece part;
+  Bytes message;
+};
+
+/// cutToFit(), each part encoded with time of sending 0. Costs one encoding when the whole fits.
+/// @throws std::invalid_argument as cutToFit().
+std::vector<EncodedPart> encodeToFit(const mapping::Piece& whole, size_t max_payload, int32_t mission);
+
 /// The inverse of encode(). Whatever the bytes are, it returns, within the memory of one message of valid
 /// pieces, and what it returns encodes to the very same bytes.
 ///

@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "shoal/mapping/belief_store.h"
+#include "shoal/random.h"
 
 namespace shoal::mapping {
 namespace {
@@ -139,6 +140,77 @@ TEST(BeliefChangesTest, ChangesAddUpToTheWhole) {
   });
   ASSERT_EQ(topics.size(), 2u);
   EXPECT_EQ(topics[0].weight, 33);
+}
+
+// A row of 40 bricks with one cell each, seen one after the other.
+LocalBelief row(int observation, int changed_from, int changed_until) {
+  LocalBelief b = belief(observation);
+  b.cells.clear();
+  for (int i = 0; i < 40; ++i) {
+    const bool changed = i >= changed_from && i < changed_until;
+    b.cells.push_back({{16 * i, 0, 0}, world::TopicId{changed ? 4 : 0}, {1000 + i}, 0.5f});
+  }
+  return b;
+}
+
+std::vector<int32_t> bricksOf(const std::vector<Piece>& pieces) {
+  std::vector<int32_t> bricks;
+  for (const Piece& piece : pieces)
+    if (piece.key.kind == PieceKind::kBrick) bricks.push_back(piece.key.index[0]);
+  return bricks;
+}
+
+TEST(BeliefChangesTest, TellsOfManyBricksWhatWasSeenFirstAndThenWhatWaitedLongest) {
+  BeliefChanges changes;
+  changes.update(row(0, 0, 0));
+  EXPECT_EQ(bricksOf(changes.update(row(1, 10, 20), 4)), (std::vector<int32_t>{10, 11, 12, 13}));
+  LocalBelief next = row(2, 0, 20);  // ten more, of which 7 is seen
+  next.cells[7].seen.us = 5000;
+  EXPECT_EQ(bricksOf(changes.update(next, 4)), (std::vector<int32_t>{7, 14, 15, 16}));
+  next.version.observation = 3;
+  next.cells[18].topic = world::TopicId{0};  // as it was told: no longer news
+  EXPECT_EQ(bricksOf(changes.update(next, 4)), (std::vector<int32_t>{0, 1, 17, 19}));
+  next.version.observation = 4;
+  const auto rest = changes.update(next);
+  EXPECT_EQ(bricksOf(rest), (std::vector<int32_t>{2, 3, 4, 5, 6, 8, 9}));
+  for (const Piece& piece : rest) EXPECT_EQ(piece.version.observation, 4);
+  EXPECT_TRUE(changes.waiting().empty());
+}
+
+LocalBelief mutated(LocalBelief belief, Random& random) {
+  ++belief.version.observation;
+  for (BelievedCell& cell : belief.cells) {
+    if (random.below(4) == 0) cell.topic = world::TopicId{random.below(2) == 0 ? 0 : 4};
+    if (random.below(4) == 0) cell.certainty = static_cast<float>(random.below(10)) / 9;
+    if (random.below(20) == 0) cell.seen.us = 1000 * belief.version.observation;
+  }
+  return belief;
+}
+
+TEST(BeliefChangesTest, ResumingEqualsNeverHavingStopped) {
+  for (uint64_t seed = 0; seed < 20; ++seed) {
+    Random random(seed);
+    BeliefChanges changes;
+    BeliefStore store;
+    LocalBelief b = row(0, 0, 0);
+    for (int step = 0; step < 30; ++step) {
+      const auto told = changes.update(b, 1 + random.below(30));
+      for (const Piece& piece : told) store.apply(piece);
+      BeliefChanges resumed;
+      resumed.restore(b, changes.waiting());
+      EXPECT_EQ(resumed.waiting(), changes.waiting());
+      b = mutated(b, random);
+      BeliefChanges unbroken = changes;
+      const size_t most = random.below(40);
+      EXPECT_EQ(resumed.update(b, most), unbroken.update(b, most));
+    }
+    for (const Piece& piece : changes.update(b)) store.apply(piece);
+    for (const Piece& whole : wholePieces(b)) {  // nothing is left out in the end
+      const Piece* held = store.find(whole.key, 0);
+      ASSERT_NE(held, nullptr);
+      EXPECT_EQ(held->content, whole.content);
+    }
+  }
 }
 
 }  // namespace
