@@ -15,7 +15,7 @@ namespace shoal::topics {
 namespace {
 
 const std::string kKind = "shoalCLM";
-constexpr uint32_t kVersion = 3;
+constexpr uint32_t kVersion = 4;
 
 }  // namespace
 
@@ -46,7 +46,8 @@ std::vector<uint8_t> CellLabelModel::checkpoint() const {
   }
   out.u64(cells_.size());
   for (const LabelledCell& cell : cells_) {
-    for (const int32_t value : {cell.index.x, cell.index.y, cell.index.z, cell.slot}) out.i32(value);
+    for (const int32_t value : {cell.index.x, cell.index.y, cell.index.z, cell.slot, toldSlot(cell)})
+      out.i32(value);
     out.u32(std::bit_cast<uint32_t>(cell.certainty));
     out.u32(std::bit_cast<uint32_t>(cell.surprise));
     out.u32(cell.num_draws);
@@ -103,7 +104,7 @@ CellLabelModel CellLabelModel::resumed(const CellLabelHyperparameters& hyperpara
   std::vector<int64_t> total(static_cast<size_t>(model.counts_.vocabularySize()));  // of each word
   for (const KnownTopic& topic : known)
     for (const world::WordCount& w : topic.words) total[static_cast<size_t>(w.word)] += w.count;
-  const size_t num_cells = in.count(52);
+  const size_t num_cells = in.count(56);
   for (size_t i = 0; i < num_cells; ++i) {
     world::CellIndex index;
     for (int32_t* const coordinate : {&index.x, &index.y, &index.z}) *coordinate = in.i32();
@@ -112,6 +113,10 @@ CellLabelModel CellLabelModel::resumed(const CellLabelHyperparameters& hyperpara
     cell.slot = in.i32();
     in.demand(cell.slot >= 0 && cell.slot < model.slots_.size() && model.slots_.isOpen(cell.slot),
               "a cell has no label");
+    cell.told = in.i32();
+    in.demand(cell.told >= 0 && cell.told < model.slots_.size() && model.slots_.isOpen(cell.told),
+              "a cell is told as none");
+    cell.told_openings = model.slots_.openings(cell.told);
     cell.certainty = std::bit_cast<float>(in.u32());
     in.demand(cell.certainty >= 0 && cell.certainty <= 1, "a certainty lies outside [0, 1]");
     cell.surprise = std::bit_cast<float>(in.u32());

@@ -66,6 +66,7 @@ CellLabelModel::CellLabelModel(const CellLabelHyperparameters& hyperparameters,
   cells_of_.resize(stride);
   scores_.resize(stride);
   alike_.resize(stride);
+  votes_.resize(stride);
   twin_of_.resize(stride);
   std::iota(twin_of_.begin(), twin_of_.end(), 0);
   weights_.resize(stride);
@@ -166,12 +167,35 @@ void CellLabelModel::redraw(int32_t c, bool words_are_counted) {
   weighLabels(scores_, cell.num_words, alike_, scale_, weights_);
   Random random(hashCombine(seed_, kCellStream), robot_, static_cast<uint64_t>(c), cell.num_draws++);
   const int32_t drawn = drawLabel(weights_, random);
-  cell.certainty = certaintyOf(cell, drawn);
+  if (!words_are_counted || drawn != old) {
+    if (words_are_counted) counts_.remove(cell.words, old);
+    counts_.add(cell.words, drawn);
+    relabel(cell, drawn);
+  }
+  tell(c);
+}
 
-  if (words_are_counted && drawn == old) return;
-  if (words_are_counted) counts_.remove(cell.words, old);
-  counts_.add(cell.words, drawn);
-  relabel(cell, drawn);
+// By scores_, the likelihoods of its words without itself.
+void CellLabelModel::tell(int32_t c) {
+  LabelledCell& cell = cells_[static_cast<size_t>(c)];
+  std::ranges::fill(votes_, 0);
+  for (const int32_t neighbor : neighborhood_.of(c)) {
+    const LabelledCell& beside = cells_[static_cast<size_t>(neighbor)];
+    if (beside.slot >= 0) ++votes_[static_cast<size_t>(twin_of_[static_cast<size_t>(toldSlot(beside))])];
+  }
+  for (size_t k = 0; k < alike_.size(); ++k) {
+    const bool is_label = static_cast<int32_t>(k) < slots_.end() && slots_.isOpen(static_cast<int32_t>(k));
+    alike_[k] = is_label ? votes_[static_cast<size_t>(twin_of_[k])] : kNotALabel;
+  }
+  cell.told = likeliestLabel(scores_, cell.num_words, alike_, scale_);
+  cell.told_openings = slots_.openings(cell.told);
+  cell.certainty = certaintyOf(cell, cell.told);
+}
+
+int32_t CellLabelModel::toldSlot(const LabelledCell& cell) const {
+  const bool is_there =
+      cell.told >= 0 && slots_.isOpen(cell.told) && slots_.openings(cell.told) == cell.told_openings;
+  return is_there ? cell.told : cell.slot;
 }
 
 // By scores_, the likelihoods of its words. Where there is no other topic, chance is the other.
@@ -235,11 +259,21 @@ Snapshot CellLabelModel::snapshot() const {
   snapshot.cells.reserve(cells_.size());
   const std::vector<int32_t> told = toldAs();
   for (const LabelledCell& cell : cells_) {
-    snapshot.cells.push_back({cell.index, slots_.id(told[static_cast<size_t>(cell.slot)]), cell.certainty,
-                              cell.surprise, cell.seen_observation, cell.seen});
+    snapshot.cells.push_back({cell.index, slots_.id(told[static_cast<size_t>(toldSlot(cell))]),
+                              cell.certainty, cell.surprise, cell.seen_observation, cell.seen});
   }
   std::ranges::sort(snapshot.cells, {}, &CellLabel::cell);
   return snapshot;
+}
+
+std::vector<world::TopicId> CellLabelModel::drawnTopics() const {
+  std::vector<const LabelledCell*> cells;
+  for (const LabelledCell& cell : cells_) cells.push_back(&cell);
+  std::ranges::sort(cells, {}, &LabelledCell::index);
+  const std::vector<int32_t> told = toldAs();
+  std::vector<world::TopicId> topics;
+  for (const LabelledCell* cell : cells) topics.push_back(slots_.id(told[static_cast<size_t>(cell->slot)]));
+  return topics;
 }
 
 std::vector<double> CellLabelModel::surprise(const world::WordsInCells& words,

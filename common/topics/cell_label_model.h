@@ -37,6 +37,10 @@ namespace shoal::topics {
 /// its labels, and it has the id of the oldest. Its labels part again when they grow unlike: an id that was
 /// told as another then comes back, as the topic it always was.
 ///
+/// What is told of a cell is not the label drawn, which is one of many that might have been, but the
+/// likeliest by the same conditional, where neighbours vote by what is told of them, for all twins of it
+/// alike.
+///
 /// observe() takes one image: its words join their cells, each of which is drawn anew, then a fixed count of
 /// cells is visited (schedule.h). The cost of an observation does not depend on how much was seen before; a
 /// visit costs (different words of the cell) x K additions.
@@ -72,6 +76,7 @@ class CellLabelModel final : public Learner {
 
   /// Topics as exact counts, every cell with its label.
   ///
+  /// The topic of a cell is the likeliest when the cell was last drawn.
   /// The certainty of a cell is cellCertainty() of its topic, the best of its labels speaking for a topic,
   /// when the cell was last drawn. Its surprise is how unusual, compared with all the robot had seen, its
   /// words were to the model of the whole map just before they joined it, in the image that surprised most.
@@ -79,13 +84,17 @@ class CellLabelModel final : public Learner {
   /// Cost: O(V K + cells log cells).
   Snapshot snapshot() const override;
 
+  /// The topic of the label that was drawn last for each cell, cells as in snapshot(): the state of the
+  /// chain, whose words a topic's counts are. snapshot() tells the likeliest instead.
+  std::vector<world::TopicId> drawnTopics() const;
+
   /// How surprising an image is to the model as it stands, before observe(): bitsPerWord() of each of its
   /// cells, in order, 0 while the map is empty. Cells that adjoin nothing known are compared with the whole
   /// map.
   /// @throws std::invalid_argument if `words` breaks its contract.
   std::vector<double> surprise(const world::WordsInCells& words, Surroundings surroundings) const;
 
-  /// About 52 bytes a cell and 8 a different word of a cell.
+  /// About 56 bytes a cell and 8 a different word of a cell.
   std::vector<uint8_t> checkpoint() const override;
 
   /// The model that wrote the checkpoint, given what it was made with.
@@ -111,8 +120,10 @@ class CellLabelModel final : public Learner {
     int64_t num_words = 0;                // the sum of their counts
     float certainty = 0;                  // when it was last drawn
     float surprise = 0;
-    int32_t slot = -1;       // its label; -1 before the first draw
-    uint32_t num_draws = 0;  // names its next random numbers
+    int32_t slot = -1;           // its label; -1 before the first draw
+    int32_t told = -1;           // the likeliest when it was last drawn; -1 before
+    uint32_t told_openings = 0;  // of that slot then: when it was opened again, it is another label
+    uint32_t num_draws = 0;      // names its next random numbers
     int32_t seen_observation = 0;
     world::Timestamp seen;
   };
@@ -123,6 +134,8 @@ class CellLabelModel final : public Learner {
   void redraw(int32_t c, bool words_are_counted);
   float certaintyOf(const LabelledCell& cell, int32_t label) const;
   void relabel(LabelledCell& cell, int32_t slot);
+  void tell(int32_t c);
+  int32_t toldSlot(const LabelledCell& cell) const;
   void findTwins();
   void leaveTwins(int32_t slot);
   std::vector<int32_t> toldAs() const;
@@ -149,7 +162,7 @@ class CellLabelModel final : public Learner {
   uint64_t num_visits_ = 0;      // of refine(): names the schedule's next random numbers
 
   std::vector<int64_t> scores_;  // of the cell being drawn, by slot
-  std::vector<int32_t> alike_;
+  std::vector<int32_t> alike_, votes_;
   std::vector<uint64_t> weights_;
 };
 

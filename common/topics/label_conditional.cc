@@ -15,6 +15,29 @@ namespace {
 
 __extension__ using Wide = __int128;
 
+// log2 of the weights, up to a constant, in units of 2^-16.
+class LogWeights {
+ public:
+  LogWeights(std::span<const int64_t> log_likelihoods, int64_t num_words, std::span<const int32_t> alike,
+             const ConditionalScale& scale)
+      : log_likelihoods_(log_likelihoods),
+        alike_(alike),
+        coupling_(scale.coupling),
+        all_(num_words * kLogOne),
+        counted_(std::min(scale.evidence, all_)) {
+    SHOAL_DEMAND(alike.size() == log_likelihoods.size() && num_words > 0);
+  }
+  int64_t of(size_t k) const {
+    const auto words = static_cast<int64_t>(static_cast<Wide>(log_likelihoods_[k]) * counted_ / all_);
+    return words + coupling_ * alike_[k];
+  }
+
+ private:
+  std::span<const int64_t> log_likelihoods_;
+  std::span<const int32_t> alike_;
+  int64_t coupling_, all_, counted_;
+};
+
 }  // namespace
 
 ConditionalScale ConditionalScale::of(double evidence, double coupling) {
@@ -24,20 +47,31 @@ ConditionalScale ConditionalScale::of(double evidence, double coupling) {
 
 void weighLabels(std::span<const int64_t> log_likelihoods, int64_t num_words, std::span<const int32_t> alike,
                  const ConditionalScale& scale, std::span<uint64_t> weights) {
-  SHOAL_DEMAND(alike.size() == log_likelihoods.size() && weights.size() == alike.size() && num_words > 0);
-  const int64_t all = num_words * kLogOne;
-  const int64_t counted = std::min(scale.evidence, all);
-  const auto logWeight = [&](size_t k) {
-    const auto words = static_cast<int64_t>(static_cast<Wide>(log_likelihoods[k]) * counted / all);
-    return words + scale.coupling * alike[k];
-  };
+  SHOAL_DEMAND(weights.size() == alike.size());
+  const LogWeights log_weights(log_likelihoods, num_words, alike, scale);
   int64_t largest = std::numeric_limits<int64_t>::min();
   for (size_t k = 0; k < alike.size(); ++k) {
-    if (alike[k] != kNotALabel) largest = std::max(largest, logWeight(k));
+    if (alike[k] != kNotALabel) largest = std::max(largest, log_weights.of(k));
   }
   for (size_t k = 0; k < alike.size(); ++k) {
-    weights[k] = alike[k] == kNotALabel ? 0 : fixedExp2(largest - logWeight(k));
+    weights[k] = alike[k] == kNotALabel ? 0 : fixedExp2(largest - log_weights.of(k));
   }
+}
+
+int32_t likeliestLabel(std::span<const int64_t> log_likelihoods, int64_t num_words,
+                       std::span<const int32_t> alike, const ConditionalScale& scale) {
+  const LogWeights log_weights(log_likelihoods, num_words, alike, scale);
+  int32_t best = -1;
+  int64_t largest = 0;
+  for (size_t k = 0; k < alike.size(); ++k) {
+    if (alike[k] == kNotALabel) continue;
+    const int64_t weight = log_weights.of(k);
+    if (best >= 0 && weight <= largest) continue;
+    best = static_cast<int32_t>(k);
+    largest = weight;
+  }
+  SHOAL_DEMAND(best >= 0);
+  return best;
 }
 
 int32_t drawLabel(std::span<const uint64_t> weights, Random& random) {

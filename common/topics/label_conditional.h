@@ -32,6 +32,10 @@ inline constexpr int32_t kNotALabel = -1;
 void weighLabels(std::span<const int64_t> log_likelihoods, int64_t num_words, std::span<const int32_t> alike,
                  const ConditionalScale& scale, std::span<uint64_t> weights);
 
+/// The likeliest label by the same conditional, ties to the lowest. One of them at least is a label.
+int32_t likeliestLabel(std::span<const int64_t> log_likelihoods, int64_t num_words,
+                       std::span<const int32_t> alike, const ConditionalScale& scale);
+
 /// A label drawn in proportion to its weight; one of them at least is above 0.
 int32_t drawLabel(std::span<const uint64_t> weights, Random& random);
 

@@ -9,7 +9,7 @@ TopicSlots::TopicSlots(int32_t max_topics) : slots_(static_cast<size_t>(max_topi
 
 void TopicSlots::open(int32_t slot) {
   SHOAL_DEMAND(!isOpen(slot) && canOpen());
-  at(slot) = {.open = true, .id = -1, .created = {}};
+  at(slot) = {.open = true, .id = -1, .openings = at(slot).openings + 1, .created = {}};
   ++num_open_;
   ++num_unnamed_;
   findEnds();
@@ -18,7 +18,7 @@ void TopicSlots::open(int32_t slot) {
 void TopicSlots::close(int32_t slot) {
   SHOAL_DEMAND(isOpen(slot));
   if (at(slot).id < 0) --num_unnamed_;
-  at(slot) = {};
+  at(slot) = {.open = false, .id = -1, .openings = at(slot).openings, .created = {}};
   --num_open_;
   findEnds();
 }
@@ -36,7 +36,7 @@ void TopicSlots::nameTopics(world::Timestamp now) {
 void TopicSlots::restore(int32_t num_ids_used, std::span<const Named> open) {
   SHOAL_DEMAND(num_open_ == 0 && next_id_ == 0);
   for (const Named& topic : open) {
-    at(topic.slot) = {.open = true, .id = number(topic.id), .created = topic.created};
+    at(topic.slot) = {.open = true, .id = number(topic.id), .openings = 1, .created = topic.created};
   }
   num_open_ = static_cast<int32_t>(open.size());
   next_id_ = num_ids_used;

@@ -34,6 +34,9 @@ class TopicSlots {
   bool canOpen() const { return numIdsLeft() > 0; }
   int32_t numIdsLeft() const { return world::kMaxTopicId + 1 - next_id_ - num_unnamed_; }
 
+  /// How often it was opened: which topic of all that were there.
+  uint32_t openings(int32_t slot) const { return at(slot).openings; }
+
   void open(int32_t slot);
   void close(int32_t slot);
 
@@ -59,6 +62,7 @@ class TopicSlots {
   struct Slot {
     bool open = false;
     int32_t id = -1;  // -1: no name yet
+    uint32_t openings = 0;
     world::Timestamp created;
   };
 

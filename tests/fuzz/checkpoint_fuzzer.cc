@@ -35,7 +35,7 @@ world::WordsInCells image() {
 
 struct OfCells {
   static constexpr const char* kKind = "shoalCLM";
-  static constexpr uint32_t kVersion = 3;
+  static constexpr uint32_t kVersion = 4;
   static CellLabelModel made() { return {{}, kGroups, 7, world::RobotId{3}}; }
   static CellLabelModel resumed(std::span<const uint8_t> bytes) {
     return CellLabelModel::resumed({}, kGroups, 7, world::RobotId{3}, bytes);

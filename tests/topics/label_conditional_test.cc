@@ -37,6 +37,24 @@ TEST(LabelConditionalTest, IsTheTemperedLikelihoodTimesThePottsPrior) {
   }
 }
 
+// What is drawn most often of what may be drawn, ties to the lowest.
+TEST(LabelConditionalTest, TheLikeliestHasTheGreatestWeight) {
+  Random random(5);
+  for (int trial = 0; trial < 500; ++trial) {
+    std::vector<int64_t> logs;
+    std::vector<int32_t> alike;
+    for (int k = 0; k < 6; ++k) {
+      logs.push_back(-static_cast<int64_t>(random.below(40)) * kLogOne * 10);
+      alike.push_back(static_cast<int32_t>(random.below(5)) - 1);
+    }
+    alike[random.below(6)] = 0;
+    const auto scale = ConditionalScale::of(10, 0.5);
+    std::vector<uint64_t> weight(6);
+    weighLabels(logs, 100, alike, scale, weight);
+    EXPECT_EQ(likeliestLabel(logs, 100, alike, scale), std::ranges::max_element(weight) - weight.begin());
+  }
+}
+
 // Words never count for more than they are.
 TEST(LabelConditionalTest, FewWordsAreWorthWhatTheyAre) {
   const std::vector<double> logs = {-3, -1, -2};
