@@ -131,7 +131,7 @@ void FusedMap::matchAnew(const StackedTopics& stacked, const matching::MatcherOp
               judgement.excluded};
   for (const HeardTopic& topic : stacked.topics) asked.topics.emplace_back(topic.robot, topic.id);
   if (asked_ == asked) return;
-  clustering_ = matchTopics(stacked, options, judgement);
+  clustering_ = matchTopics(stacked, options, judgement, &memory_);
   asked_ = std::move(asked);
 }
 

@@ -97,6 +97,7 @@ class FusedMap {
 
   std::optional<Asked> asked_;
   matching::Clustering clustering_;  // its answer
+  matching::MatchMemory memory_;
 
   std::vector<Correspondence> correspondences_;
   std::vector<LabelSummary> labels_;

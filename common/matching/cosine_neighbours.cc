@@ -118,4 +118,38 @@ std::vector<std::pair<int, int>> cosineNeighbours(const std::vector<const Descri
   return pairs;
 }
 
+std::vector<std::pair<int, int>> cosineNeighboursOf(const std::vector<const Descriptor*>& topics,
+                                                    const std::vector<int>& chosen, double sigma) {
+  std::vector<double> length;
+  int32_t num_words = 0;
+  for (const Descriptor* topic : topics) {
+    double squares = 0.0;
+    for (const Descriptor::Entry& e : topic->entries)
+      squares += static_cast<double>(e.weight) * static_cast<double>(e.weight);
+    length.push_back(std::sqrt(squares));
+    if (!topic->entries.empty()) num_words = std::max(num_words, topic->entries.back().word + 1);
+  }
+  std::vector<char> is_done(topics.size(), 0);
+  std::vector<double> share(static_cast<size_t>(num_words), 0.0);  // of the chosen topic
+  std::vector<std::pair<int, int>> pairs;
+  for (const int i : chosen) {
+    const auto own = static_cast<size_t>(i);
+    is_done[own] = 1;
+    for (const Descriptor::Entry& e : topics[own]->entries)
+      share[static_cast<size_t>(e.word)] = static_cast<double>(e.weight) / length[own];
+    for (size_t other = 0; other < topics.size(); ++other) {
+      if (is_done[other] != 0 || topics[own]->entries.empty() || topics[other]->entries.empty()) continue;
+      double dot = 0.0;
+      for (const Descriptor::Entry& e : topics[other]->entries)
+        dot += share[static_cast<size_t>(e.word)] * static_cast<double>(e.weight);
+      dot /= length[other];
+      if (dot < sigma - kRoom) continue;
+      if (dot > sigma + kRoom || reaches(cosine(*topics[own], *topics[other]), sigma))
+        pairs.emplace_back(std::minmax(i, static_cast<int>(other)));
+    }
+    for (const Descriptor::Entry& e : topics[own]->entries) share[static_cast<size_t>(e.word)] = 0.0;
+  }
+  return pairs;
+}
+
 }  // namespace shoal::matching
