@@ -2,6 +2,7 @@
 #include "shoal/matching/cosine_neighbours.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <utility>
@@ -120,6 +121,8 @@ std::vector<std::pair<int, int>> cosineNeighbours(const std::vector<const Descri
 
 std::vector<std::pair<int, int>> cosineNeighboursOf(const std::vector<const Descriptor*>& topics,
                                                     const std::vector<int>& chosen, double sigma) {
+  constexpr size_t kAtOnce = 4;  // chosen topics, side by side
+  using Four = std::array<double, kAtOnce>;
   std::vector<double> length;
   int32_t num_words = 0;
   for (const Descriptor* topic : topics) {
@@ -129,25 +132,34 @@ std::vector<std::pair<int, int>> cosineNeighboursOf(const std::vector<const Desc
     length.push_back(std::sqrt(squares));
     if (!topic->entries.empty()) num_words = std::max(num_words, topic->entries.back().word + 1);
   }
-  std::vector<char> is_done(topics.size(), 0);
-  std::vector<double> share(static_cast<size_t>(num_words), 0.0);  // of the chosen topic
+  std::vector<size_t> turn(topics.size(), chosen.size());  // of the chosen; the others come after all
+  for (size_t k = 0; k < chosen.size(); ++k) turn[static_cast<size_t>(chosen[k])] = k;
+
   std::vector<std::pair<int, int>> pairs;
-  for (const int i : chosen) {
-    const auto own = static_cast<size_t>(i);
-    is_done[own] = 1;
-    for (const Descriptor::Entry& e : topics[own]->entries)
-      share[static_cast<size_t>(e.word)] = static_cast<double>(e.weight) / length[own];
-    for (size_t other = 0; other < topics.size(); ++other) {
-      if (is_done[other] != 0 || topics[own]->entries.empty() || topics[other]->entries.empty()) continue;
-      double dot = 0.0;
-      for (const Descriptor::Entry& e : topics[other]->entries)
-        dot += share[static_cast<size_t>(e.word)] * static_cast<double>(e.weight);
-      dot /= length[other];
-      if (dot < sigma - kRoom) continue;
-      if (dot > sigma + kRoom || reaches(cosine(*topics[own], *topics[other]), sigma))
-        pairs.emplace_back(std::minmax(i, static_cast<int>(other)));
+  for (size_t first = 0; first < chosen.size(); first += kAtOnce) {
+    const size_t end = std::min(chosen.size(), first + kAtOnce);
+    std::vector<Four> share(static_cast<size_t>(num_words), Four{});
+    for (size_t k = first; k < end; ++k) {
+      const auto own = static_cast<size_t>(chosen[k]);
+      for (const Descriptor::Entry& e : topics[own]->entries)
+        share[static_cast<size_t>(e.word)][k - first] = static_cast<double>(e.weight) / length[own];
     }
-    for (const Descriptor::Entry& e : topics[own]->entries) share[static_cast<size_t>(e.word)] = 0.0;
+    for (size_t other = 0; other < topics.size(); ++other) {
+      if (turn[other] <= first || topics[other]->entries.empty()) continue;  // has met all of these
+      Four dot{};
+      for (const Descriptor::Entry& e : topics[other]->entries) {
+        const Four& shares = share[static_cast<size_t>(e.word)];
+        const auto weight = static_cast<double>(e.weight);
+        for (size_t k = 0; k < kAtOnce; ++k) dot[k] += shares[k] * weight;
+      }
+      for (size_t k = first; k < std::min(end, turn[other]); ++k) {
+        const Descriptor& own = *topics[static_cast<size_t>(chosen[k])];
+        const double product = dot[k - first] / length[other];
+        if (own.entries.empty() || product < sigma - kRoom) continue;
+        if (product > sigma + kRoom || reaches(cosine(own, *topics[other]), sigma))
+          pairs.emplace_back(std::minmax(chosen[k], static_cast<int>(other)));
+      }
+    }
   }
   return pairs;
 }
