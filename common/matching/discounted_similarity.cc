@@ -115,20 +115,23 @@ PairTable discountedSimilarity(const DescriptorSet& set) {
   }
 
   PairTable table(static_cast<int>(topics.size()));
-  for (size_t a = 0; a < rows.numBlocks(); ++a) {
-    for (size_t b = 0; b <= a; ++b) {
-      const auto dot = rows.products(a, b);
-      for (size_t i = a * kBlock; i < std::min(topics.size(), (a + 1) * kBlock); ++i) {
-        for (size_t j = b * kBlock; j < std::min(i, (b + 1) * kBlock); ++j) {
-          const double lengths = length[i] * length[j];
-          const double cosine =
-              lengths > 0 ? static_cast<double>(dot[i - a * kBlock][j - b * kBlock]) / lengths : 0.0;
-          const double bounded = std::fmin(std::fmax(cosine, -1.0), 1.0);
-          table.at(static_cast<int>(i), static_cast<int>(j)) =
-              static_cast<int32_t>(std::lround(bounded * 1e9));
-        }
+  const auto fill = [&](size_t a, size_t b) {
+    const auto dot = rows.products(a, b);
+    for (size_t i = a * kBlock; i < std::min(topics.size(), (a + 1) * kBlock); ++i) {
+      for (size_t j = b * kBlock; j < std::min(i, (b + 1) * kBlock); ++j) {
+        const double lengths = length[i] * length[j];
+        const double cosine =
+            lengths > 0 ? static_cast<double>(dot[i - a * kBlock][j - b * kBlock]) / lengths : 0.0;
+        const double bounded = std::fmin(std::fmax(cosine, -1.0), 1.0);
+        table.at(static_cast<int>(i), static_cast<int>(j)) = static_cast<int32_t>(std::lround(bounded * 1e9));
       }
     }
+  };
+  constexpr size_t kNear = 8;  // blocks that stay in a core's own cache while all others pass by
+  for (size_t first = 0; first < rows.numBlocks(); first += kNear) {
+    const size_t end = std::min(rows.numBlocks(), first + kNear);
+    for (size_t b = 0; b < end; ++b)
+      for (size_t a = std::max(first, b); a < end; ++a) fill(a, b);
   }
   return table;
 }
