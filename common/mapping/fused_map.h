@@ -79,7 +79,7 @@ class FusedMap {
   void say(world::RobotId robot, const TileIndex& index, std::span<const TileCell> cells,
            std::set<TileIndex>& touched);
   void exclude(const std::set<world::RobotId>& robots, std::set<TileIndex>& touched);
-  void foldTile(const TileIndex& index);
+  void foldTile(const TileIndex& index, MapTile& tile);
   void countHeard(world::RobotId robot, const Spoken& spoken, int64_t sign);
   void matchAnew(const StackedTopics& stacked, const matching::MatcherOptions& options,
                  const Judgement& judgement);
