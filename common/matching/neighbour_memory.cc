@@ -91,9 +91,13 @@ void NeighbourMemory::keep(const std::vector<const Descriptor*>& topics, const s
   std::vector<Descriptor> kept;
   std::vector<uint64_t> hashes;
   for (size_t i = 0; i < topics.size(); ++i) {
-    const auto at = static_cast<size_t>(before[i]);
-    kept.push_back(before[i] < 0 ? *topics[i] : std::move(topics_[at]));
-    hashes.push_back(before[i] < 0 ? hashOf(*topics[i]) : hashes_[at]);
+    if (before[i] < 0) {
+      kept.push_back(*topics[i]);
+      hashes.push_back(hashOf(*topics[i]));
+    } else {
+      kept.push_back(std::move(topics_[static_cast<size_t>(before[i])]));
+      hashes.push_back(hashes_[static_cast<size_t>(before[i])]);
+    }
   }
   topics_ = std::move(kept);
   hashes_ = std::move(hashes);
