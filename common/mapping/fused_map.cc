@@ -16,6 +16,7 @@ namespace shoal::mapping {
 namespace {
 
 static_assert(kTileEdge == kBrickEdge);
+constexpr size_t kAhead = 4;  // tiles that are being fetched while one is folded
 
 bool isInBrick(const world::CellIndex& cell, const std::array<int32_t, 3>& brick) {
   return brickOf(cell) == brick;
@@ -117,7 +118,12 @@ void FusedMap::update(const BeliefStore& beliefs, const matching::MatcherOptions
   std::set<TileIndex> touched;
   for (const RobotBrick& brick : changes(beliefs)) readBrick(beliefs, brick, touched);
   exclude(judgement.excluded, touched);
-  for (const TileIndex& index : touched) foldTile(index);
+  std::vector<std::pair<TileIndex, MapTile*>> tiles;
+  for (const TileIndex& index : touched) tiles.emplace_back(index, &tiles_.at(index));
+  for (size_t t = 0; t < tiles.size(); ++t) {
+    if (t + kAhead < tiles.size()) tiles[t + kAhead].second->prefetch();
+    foldTile(tiles[t].first, *tiles[t].second);
+  }
 
   const StackedTopics stacked = stack(beliefs, excluded_, heard_cells_);  // canonical, whatever came first
   matchAnew(stacked, options, judgement);
@@ -131,7 +137,7 @@ void FusedMap::matchAnew(const StackedTopics& stacked, const matching::MatcherOp
               judgement.excluded};
   for (const HeardTopic& topic : stacked.topics) asked.topics.emplace_back(topic.robot, topic.id);
   if (asked_ == asked) return;
-  clustering_ = matchTopics(stacked, options, judgement);
+  clustering_ = matchTopics(stacked, options, judgement, &memory_);
   asked_ = std::move(asked);
 }
 
@@ -216,8 +222,7 @@ void FusedMap::exclude(const std::set<world::RobotId>& robots, std::set<TileInde
   excluded_ = robots;
 }
 
-void FusedMap::foldTile(const TileIndex& index) {
-  MapTile& tile = tiles_.at(index);
+void FusedMap::foldTile(const TileIndex& index, MapTile& tile) {
   for (const MapTile::Tally& tally : tile.tallies()) {
     const auto shown = shown_.find(tally.voice);
     num_cells_ -= tally.cells;

@@ -79,7 +79,7 @@ class FusedMap {
   void say(world::RobotId robot, const TileIndex& index, std::span<const TileCell> cells,
            std::set<TileIndex>& touched);
   void exclude(const std::set<world::RobotId>& robots, std::set<TileIndex>& touched);
-  void foldTile(const TileIndex& index);
+  void foldTile(const TileIndex& index, MapTile& tile);
   void countHeard(world::RobotId robot, const Spoken& spoken, int64_t sign);
   void matchAnew(const StackedTopics& stacked, const matching::MatcherOptions& options,
                  const Judgement& judgement);
@@ -97,6 +97,7 @@ class FusedMap {
 
   std::optional<Asked> asked_;
   matching::Clustering clustering_;  // its answer
+  matching::MatchMemory memory_;
 
   std::vector<Correspondence> correspondences_;
   std::vector<LabelSummary> labels_;

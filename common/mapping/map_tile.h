@@ -30,7 +30,9 @@ struct TileCell {
 /// A tile of the fused map: what every robot says of it, side by side, and of each cell the newest.
 ///
 /// Times and voices are numbered within the tile, times in their order. So a cell takes five bytes, whatever
-/// times and robots there are, and labels are not in it: a new matching leaves tiles as they are.
+/// times and robots there are, and labels are not in it: a new matching leaves tiles as they are. Of a robot
+/// only the rows of sixteen cells are held in which it says something: of a surface in 3-D a tile sees a
+/// strip.
 class MapTile {
  public:
   /// What a voice shows in this tile after fold().
@@ -42,21 +44,25 @@ class MapTile {
   };
 
   /// Lets `robot` say these cells, each place once, and nothing else. None: it says nothing here.
-  /// Cost: O(robots x 256). @throws std::length_error for more than 255 robots.
+  /// Cost: O(rows that robots say something of). @throws std::length_error for more than 255 robots.
   void set(world::RobotId robot, std::span<const TileCell> cells);
 
   bool holds(world::RobotId robot) const;
   bool isEmpty() const { return layers_.empty(); }
 
   /// Chooses the newest of every cell anew, the higher robot number among equals, as if the excluded robots
-  /// had said nothing. Cost: O(robots x 256), in vectors.
+  /// had said nothing. Cost: O(rows that robots say something of), a vector each.
   void fold(const std::set<world::RobotId>& excluded);
+
+  /// Has a core fetch what fold() will read, while it still folds tiles before. Changes nothing.
+  void prefetch() const;
 
   /// Counts what fold() has chosen. `index` is where the tile lies.
   void count(const TileIndex& index);
 
   /// The outcome of fold(): read with times() and voices().
   const TileColumns& newest() const { return newest_; }
+  uint16_t rowsShown() const { return shown_; }  ///< bit r: row r of newest() may hold a cell; no other does
   const std::vector<world::Timestamp>& times() const { return times_; }  ///< of rank 1, 2, ..: ascending
   const std::vector<Voice>& voices() const { return voices_; }           ///< by number: ascending
   /// The outcome of count(), ascending by voice.
@@ -65,12 +71,14 @@ class MapTile {
  private:
   struct Layer {
     world::RobotId robot{};
-    TileColumns said;
+    uint16_t rows = 0;  // bit r: it says something of row r
   };
   void renumber(world::RobotId robot, std::span<const TileCell> cells);
 
   std::vector<Layer> layers_;  // ascending by robot
+  std::vector<TileRow> said_;  // their rows, one layer after the other
   TileColumns newest_;
+  uint16_t shown_ = 0;
   std::vector<world::Timestamp> times_;
   std::vector<Voice> voices_;
   std::vector<Tally> tallies_;

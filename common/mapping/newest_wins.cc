@@ -1,34 +1,63 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "shoal/mapping/newest_wins.h"
 
-#include <algorithm>
+#include <bit>
+#include <cstring>
 
 namespace shoal::mapping {
 namespace {
 
-// One column after the other, each a comparison and a selection, so that the compiler takes them in vectors.
-[[gnu::always_inline]] inline void take(const TileColumns& __restrict said, TileColumns& __restrict newest) {
-  std::array<uint16_t, kTileCells> newer;  // all ones where it is, else 0
-  for (size_t i = 0; i < kTileCells; ++i)
-    newer[i] = said.time[i] >= newest.time[i] ? uint16_t{0xffff} : uint16_t{0};
-  for (size_t i = 0; i < kTileCells; ++i) newest.time[i] = std::max(said.time[i], newest.time[i]);
-  for (size_t i = 0; i < kTileCells; ++i)
-    newest.voice[i] = static_cast<uint16_t>((said.voice[i] & newer[i]) | (newest.voice[i] & ~newer[i]));
-  for (size_t i = 0; i < kTileCells; ++i) {
-    const auto mask = static_cast<uint8_t>(newer[i]);
-    newest.certainty[i] = static_cast<uint8_t>((said.certainty[i] & mask) | (newest.certainty[i] & ~mask));
-  }
+// A row is two vectors of sixteen 16-bit numbers and one of bytes. (Compilers make of these what a machine
+// has.)
+using Words = uint16_t __attribute__((vector_size(32)));
+using Bytes = uint8_t __attribute__((vector_size(16)));
+static_assert(sizeof(Words) == sizeof(TileRow::time) && sizeof(Bytes) == sizeof(TileRow::certainty));
+
+template <class Vector>
+[[gnu::always_inline]] inline void blend(const void* said, void* newest, const Vector& newer) {
+  Vector a, b;
+  std::memcpy(&a, said, sizeof a);
+  std::memcpy(&b, newest, sizeof b);
+  b = (a & newer) | (b & ~newer);
+  std::memcpy(newest, &b, sizeof b);
 }
 
-void takeAnywhere(const TileColumns& said, TileColumns& newest) { take(said, newest); }
+[[gnu::always_inline]] inline uint16_t take(const TileRow* said, uint16_t rows, TileColumns& newest,
+                                            uint16_t shown) {
+  for (unsigned left = rows; left != 0; left &= left - 1, ++said) {
+    const auto row = static_cast<size_t>(std::countr_zero(left));
+    uint16_t* const time = newest.time.data() + row * kTileEdge;
+    uint16_t* const voice = newest.voice.data() + row * kTileEdge;
+    uint8_t* const certainty = newest.certainty.data() + row * kTileEdge;
+    if ((shown >> row & 1) == 0) {
+      std::memcpy(time, &said->time, sizeof said->time);
+      std::memcpy(voice, &said->voice, sizeof said->voice);
+      std::memcpy(certainty, &said->certainty, sizeof said->certainty);
+      continue;
+    }
+    Words a, b;
+    std::memcpy(&a, &said->time, sizeof a);
+    std::memcpy(&b, time, sizeof b);
+    const Words newer = reinterpret_cast<Words>(a >= b);  // all ones where it is, else 0
+    blend(&said->time, time, newer);
+    blend(&said->voice, voice, newer);
+    blend(&said->certainty, certainty, __builtin_convertvector(newer, Bytes));
+  }
+  return static_cast<uint16_t>(shown | rows);
+}
+
+uint16_t takeAnywhere(const TileRow* said, uint16_t rows, TileColumns& newest, uint16_t shown) {
+  return take(said, rows, newest, shown);
+}
 
 #if defined(__x86_64__)
-__attribute__((target("avx2"))) void takeAvx2(const TileColumns& said, TileColumns& newest) {
-  take(said, newest);
+__attribute__((target("avx2"))) uint16_t takeAvx2(const TileRow* said, uint16_t rows, TileColumns& newest,
+                                                  uint16_t shown) {
+  return take(said, rows, newest, shown);
 }
 #endif
 
-using Take = void (*)(const TileColumns&, TileColumns&);
+using Take = uint16_t (*)(const TileRow*, uint16_t, TileColumns&, uint16_t);
 
 Take fastest() {
 #if defined(__x86_64__)
@@ -39,9 +68,9 @@ Take fastest() {
 
 }  // namespace
 
-void takeNewer(const TileColumns& said, TileColumns& newest) {
+uint16_t takeNewer(const TileRow* said, uint16_t rows, TileColumns& newest, uint16_t shown) {
   static const Take chosen = fastest();
-  chosen(said, newest);
+  return chosen(said, rows, newest, shown);
 }
 
 }  // namespace shoal::mapping

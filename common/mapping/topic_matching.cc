@@ -22,7 +22,7 @@ class Numbers {
 }  // namespace
 
 matching::Clustering matchTopics(const StackedTopics& stacked, const matching::MatcherOptions& options,
-                                 const Judgement& judgement) {
+                                 const Judgement& judgement, matching::MatchMemory* memory) {
   Numbers numbers(stacked);
   const auto numbered = [&](const std::vector<TopicPair>& pairs) {
     std::vector<std::pair<int, int>> result;
@@ -36,7 +36,7 @@ matching::Clustering matchTopics(const StackedTopics& stacked, const matching::M
   const matching::PairConstraints pairs{numbered(judgement.links), numbered(judgement.apart)};
   if (pairs.empty()) {
     const matching::Contraction alone = matching::contract(numbers.size(), {});
-    return matching::extend(alone, stacked.vertex, matching::match(stacked.descriptors, options));
+    return matching::extend(alone, stacked.vertex, matching::match(stacked.descriptors, options, {}, memory));
   }
   std::vector<int> place(stacked.vertex.begin(), stacked.vertex.end());
   place.resize(static_cast<size_t>(numbers.size()), -1);
@@ -47,7 +47,7 @@ matching::Clustering matchTopics(const StackedTopics& stacked, const matching::M
   matching::Clustering all =
       matching::extend(contraction, place,
                        matching::match(stacked.descriptors, options,
-                                       matching::restrict(contraction, {contraction, owner}, place)));
+                                       matching::restrict(contraction, {contraction, owner}, place), memory));
   all.label.resize(stacked.topics.size());
   return matching::numberByFirstAppearance(all.label, all.universe);
 }

@@ -11,10 +11,11 @@ namespace shoal::mapping {
 /// two topics must be by way of a third one that is not among them holds; pairs with a robot that is left out
 /// do not count.
 /// @param judgement  from judge(): links and apart do not contradict one another.
+/// @param memory     as matching::match()'s: changes no answer.
 /// @returns the label of each of stacked.topics. One outside the matching has a label of its own, or that of
 /// the topics it is linked to.
 /// @throws std::invalid_argument as matching::match() for wrong options.
 matching::Clustering matchTopics(const StackedTopics& stacked, const matching::MatcherOptions& options,
-                                 const Judgement& judgement);
+                                 const Judgement& judgement, matching::MatchMemory* memory = nullptr);
 
 }  // namespace shoal::mapping

@@ -7,8 +7,6 @@
 #include <string>
 #include <utility>
 
-#include "shoal/matching/cosine_neighbours.h"
-
 namespace shoal::matching {
 namespace {
 
@@ -21,36 +19,10 @@ std::vector<const Descriptor*> inOneRow(const DescriptorSet& topics) {
   return all;
 }
 
-template <class AreAlike>
-AssociationGraph graphOf(const DescriptorSet& topics, const std::vector<const Descriptor*>& all,
-                         bool own_pairs, AreAlike areAlike) {
+AssociationGraph withoutEdges(const DescriptorSet& topics) {
   AssociationGraph graph;
   for (const std::vector<Descriptor>& robot : topics.robots)
     graph.num_topics.push_back(static_cast<int>(robot.size()));
-  const std::vector<int> owner = owners(graph);
-  for (size_t i = 0; i < all.size(); ++i) {
-    if (all[i]->entries.empty()) continue;
-    for (size_t j = i + 1; j < all.size(); ++j) {
-      if (all[j]->entries.empty() || (!own_pairs && owner[i] == owner[j])) continue;
-      if (areAlike(i, j)) graph.edges.push_back({static_cast<int>(i), static_cast<int>(j)});
-    }
-  }
-  return graph;
-}
-
-// The same edges as by comparing all pairs, in a fraction of the time.
-AssociationGraph cosineGraph(const DescriptorSet& topics, const std::vector<const Descriptor*>& all,
-                             bool own_pairs, double sigma) {
-  AssociationGraph graph;
-  for (const std::vector<Descriptor>& robot : topics.robots) {
-    graph.num_topics.push_back(static_cast<int>(robot.size()));
-  }
-  const std::vector<int> owner = owners(graph);
-  for (const auto& [i, j] : cosineNeighbours(all, sigma)) {
-    if (own_pairs || owner[static_cast<size_t>(i)] != owner[static_cast<size_t>(j)]) {
-      graph.edges.push_back({i, j});
-    }
-  }
   return graph;
 }
 
@@ -96,19 +68,33 @@ std::vector<int> owners(const AssociationGraph& graph) {
 }
 
 AssociationGraph associationGraph(const DescriptorSet& topics, Similarity similarity, double sigma,
-                                  bool own_pairs) {
+                                  bool own_pairs, NeighbourMemory* memory) {
   const std::vector<const Descriptor*> all = inOneRow(topics);
-  if (similarity == &cosine) return cosineGraph(topics, all, own_pairs, sigma);
-  return graphOf(topics, all, own_pairs,
-                 [&](size_t i, size_t j) { return reaches(similarity(*all[i], *all[j]), sigma); });
+  AssociationGraph graph = withoutEdges(topics);
+  const std::vector<int> owner = owners(graph);
+  for (const auto& [i, j] :
+       memory != nullptr ? memory->pairs(all, similarity, sigma) : neighbours(all, similarity, sigma)) {
+    if (own_pairs || owner[static_cast<size_t>(i)] != owner[static_cast<size_t>(j)])
+      graph.edges.push_back({i, j});
+  }
+  return graph;
 }
 
 AssociationGraph associationGraph(const DescriptorSet& topics, const PairTable& similarity, double sigma,
                                   bool own_pairs) {
+  const std::vector<const Descriptor*> all = inOneRow(topics);
+  AssociationGraph graph = withoutEdges(topics);
+  const std::vector<int> owner = owners(graph);
   const int64_t least = std::llround(sigma * 1e9);
-  return graphOf(topics, inOneRow(topics), own_pairs, [&](size_t i, size_t j) {
-    return similarity.at(static_cast<int>(i), static_cast<int>(j)) >= least;
-  });
+  for (size_t i = 0; i < all.size(); ++i) {
+    if (all[i]->entries.empty()) continue;
+    for (size_t j = i + 1; j < all.size(); ++j) {
+      if (all[j]->entries.empty() || (!own_pairs && owner[i] == owner[j])) continue;
+      const auto a = static_cast<int>(i), b = static_cast<int>(j);
+      if (similarity.at(a, b) >= least) graph.edges.push_back({a, b});
+    }
+  }
+  return graph;
 }
 
 }  // namespace shoal::matching

@@ -7,6 +7,7 @@
 
 #include "shoal/matching/descriptors.h"
 #include "shoal/matching/discounted_similarity.h"
+#include "shoal/matching/neighbour_memory.h"
 #include "shoal/matching/similarity.h"
 
 namespace shoal::matching {
@@ -39,9 +40,11 @@ std::vector<int> owners(const AssociationGraph& graph);
 /// @param topics  valid: check(topics) has passed.
 /// @param sigma   in (0, 1].
 ///
+/// @param memory  when not null: saves what was compared for the next graph (neighbour_memory.h).
+///
 /// Cost: O(n² V) for n topics of V words; cosine() by cosineNeighbours(), for sparse ones a fraction of it.
 AssociationGraph associationGraph(const DescriptorSet& topics, Similarity similarity, double sigma,
-                                  bool own_pairs = false);
+                                  bool own_pairs = false, NeighbourMemory* memory = nullptr);
 
 /// The same with similarities already known, by vertex.
 AssociationGraph associationGraph(const DescriptorSet& topics, const PairTable& similarity, double sigma,

@@ -143,9 +143,9 @@ Eigen::SparseMatrix<double> normalizedLaplacian(const AssociationGraph& graph, b
 }
 
 Clustering rectify(const AssociationGraph& graph, const ClearOptions& options,
-                   const PairConstraints& constraints) {
+                   const PairConstraints& constraints, SpectrumMemory* memory) {
   checkOptions(options);
-  if (!constraints.empty()) return rectifyConstrained(graph, options, constraints);
+  if (!constraints.empty()) return rectifyConstrained(graph, options, constraints, memory);
   const Eigen::SparseMatrix<double> laplacian = normalizedLaplacian(graph, options.distinct);
   const int n = graph.numVertices();
   if (n == 0) return {};
@@ -153,7 +153,7 @@ Clustering rectify(const AssociationGraph& graph, const ClearOptions& options,
   // Universe: the eigenvalues below the threshold, and room for the largest robot.
   const int largest = *std::max_element(graph.num_topics.begin(), graph.num_topics.end());
   const SmallEnd end = smallEnd(laplacian, options.eigenvalue_threshold - options.eigenvalue_tolerance,
-                                options.distinct ? largest : 0);
+                                options.distinct ? largest : 0, memory);
 
   const std::vector<Embedding> embeddings = embed(end);
 

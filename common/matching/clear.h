@@ -6,6 +6,7 @@
 #include "shoal/matching/association_graph.h"
 #include "shoal/matching/clustering.h"
 #include "shoal/matching/pair_constraints.h"
+#include "shoal/matching/spectrum_memory.h"
 
 namespace shoal::matching {
 
@@ -52,6 +53,7 @@ Eigen::SparseMatrix<double> normalizedLaplacian(const AssociationGraph& graph, b
 /// @param constraints  vertices that must be together become one, with the
 ///               heaviest of the edges between; those that must be apart are
 ///               treated as if of one robot (constrained_clear.h).
+/// @param memory  when not null: components that it knows are not solved again. Changes no answer.
 /// @returns A clustering of the graph's vertices. Empty for a graph without any.
 /// @throws std::invalid_argument naming the offending edge, option or pair.
 ///
@@ -64,6 +66,6 @@ Eigen::SparseMatrix<double> normalizedLaplacian(const AssociationGraph& graph, b
 /// two places: the tolerance at the threshold, and optimal instead of greedy
 /// assignment; see clear.cc.
 Clustering rectify(const AssociationGraph& graph, const ClearOptions& options = {},
-                   const PairConstraints& constraints = {});
+                   const PairConstraints& constraints = {}, SpectrumMemory* memory = nullptr);
 
 }  // namespace shoal::matching

@@ -58,7 +58,7 @@ std::vector<int> choose(const std::vector<int>& groups, const std::vector<Place>
 }  // namespace
 
 Clustering rectifyConstrained(const AssociationGraph& graph, const ClearOptions& options,
-                              const PairConstraints& constraints) {
+                              const PairConstraints& constraints, SpectrumMemory* memory) {
   check(graph);
   const Contraction contraction = contract(graph.numVertices(), constraints);
   if (contraction.group.empty()) return {};
@@ -66,9 +66,9 @@ Clustering rectifyConstrained(const AssociationGraph& graph, const ClearOptions&
   int most = 0;
   const std::vector<std::vector<int>> by_robot = groupsByRobot(graph, contraction, most);
 
-  const SmallEnd end =
-      smallEnd(normalizedLaplacian(contractedGraph(graph, contraction, conflicts), false),
-               options.eigenvalue_threshold - options.eigenvalue_tolerance, options.distinct ? most : 0);
+  const SmallEnd end = smallEnd(normalizedLaplacian(contractedGraph(graph, contraction, conflicts), false),
+                                options.eigenvalue_threshold - options.eigenvalue_tolerance,
+                                options.distinct ? most : 0, memory);
   const std::vector<Embedding> embeddings = embed(end);
   const std::vector<Place> place = places(embeddings, contraction.numGroups());
 

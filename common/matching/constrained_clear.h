@@ -17,6 +17,6 @@ namespace shoal::matching {
 /// @throws std::invalid_argument as rectify(), and naming a pair of vertices that are none or that must be
 /// both together and apart.
 Clustering rectifyConstrained(const AssociationGraph& graph, const ClearOptions& options,
-                              const PairConstraints& constraints);
+                              const PairConstraints& constraints, SpectrumMemory* memory);
 
 }  // namespace shoal::matching

@@ -2,6 +2,7 @@
 #include "shoal/matching/cosine_neighbours.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <utility>
@@ -115,6 +116,51 @@ std::vector<std::pair<int, int>> cosineNeighbours(const std::vector<const Descri
     for (const Share& s : own) holders[s.word].push_back({static_cast<int>(j), s.share});
   }
   std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+std::vector<std::pair<int, int>> cosineNeighboursOf(const std::vector<const Descriptor*>& topics,
+                                                    const std::vector<int>& chosen, double sigma) {
+  constexpr size_t kAtOnce = 4;  // chosen topics, side by side
+  using Four = std::array<double, kAtOnce>;
+  std::vector<double> length;
+  int32_t num_words = 0;
+  for (const Descriptor* topic : topics) {
+    double squares = 0.0;
+    for (const Descriptor::Entry& e : topic->entries)
+      squares += static_cast<double>(e.weight) * static_cast<double>(e.weight);
+    length.push_back(std::sqrt(squares));
+    if (!topic->entries.empty()) num_words = std::max(num_words, topic->entries.back().word + 1);
+  }
+  std::vector<size_t> turn(topics.size(), chosen.size());  // of the chosen; the others come after all
+  for (size_t k = 0; k < chosen.size(); ++k) turn[static_cast<size_t>(chosen[k])] = k;
+
+  std::vector<std::pair<int, int>> pairs;
+  for (size_t first = 0; first < chosen.size(); first += kAtOnce) {
+    const size_t end = std::min(chosen.size(), first + kAtOnce);
+    std::vector<Four> share(static_cast<size_t>(num_words), Four{});
+    for (size_t k = first; k < end; ++k) {
+      const auto own = static_cast<size_t>(chosen[k]);
+      for (const Descriptor::Entry& e : topics[own]->entries)
+        share[static_cast<size_t>(e.word)][k - first] = static_cast<double>(e.weight) / length[own];
+    }
+    for (size_t other = 0; other < topics.size(); ++other) {
+      if (turn[other] <= first || topics[other]->entries.empty()) continue;  // has met all of these
+      Four dot{};
+      for (const Descriptor::Entry& e : topics[other]->entries) {
+        const Four& shares = share[static_cast<size_t>(e.word)];
+        const auto weight = static_cast<double>(e.weight);
+        for (size_t k = 0; k < kAtOnce; ++k) dot[k] += shares[k] * weight;
+      }
+      for (size_t k = first; k < std::min(end, turn[other]); ++k) {
+        const Descriptor& own = *topics[static_cast<size_t>(chosen[k])];
+        const double product = dot[k - first] / length[other];
+        if (own.entries.empty() || product < sigma - kRoom) continue;
+        if (product > sigma + kRoom || reaches(cosine(own, *topics[other]), sigma))
+          pairs.emplace_back(std::minmax(chosen[k], static_cast<int>(other)));
+      }
+    }
+  }
   return pairs;
 }
 

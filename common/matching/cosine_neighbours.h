@@ -25,4 +25,11 @@ namespace shoal::matching {
 /// WWW 2007.
 std::vector<std::pair<int, int>> cosineNeighbours(const std::vector<const Descriptor*>& topics, double sigma);
 
+/// Those of the same pairs that have a topic of `chosen` in them, each once, in any order: these are compared
+/// with all others, in doubles, and by cosine() itself within 1e-8 of sigma.
+/// @param chosen  places among `topics`, each once.
+/// Cost: O(words of all topics) for each of the chosen.
+std::vector<std::pair<int, int>> cosineNeighboursOf(const std::vector<const Descriptor*>& topics,
+                                                    const std::vector<int>& chosen, double sigma);
+
 }  // namespace shoal::matching

@@ -4,28 +4,30 @@
 #include <algorithm>
 #include <functional>
 #include <stdexcept>
+#include <string>
 
 namespace shoal::matching {
 namespace {
 
 constexpr int64_t kMaxTotal = int64_t{1} << 62;  // products of two totals fit 128 bits
 
-void check(const Descriptor& topic, int32_t vocabulary_size, const std::string& name) {
+void check(const Descriptor& topic, int32_t vocabulary_size, size_t robot, size_t number) {
+  const auto refuse = [&](const std::string& why) {
+    throw std::invalid_argument("robot " + std::to_string(robot) + ", topic " + std::to_string(number) + why);
+  };
   int32_t previous = -1;
   int64_t total = 0;
   for (const Descriptor::Entry& e : topic.entries) {
-    const std::string word = name + ": word " + std::to_string(e.word);
     if (e.word < 0 || e.word >= vocabulary_size) {
-      throw std::invalid_argument(word + " is not in the vocabulary of " + std::to_string(vocabulary_size));
+      refuse(": word " + std::to_string(e.word) + " is not in the vocabulary of " +
+             std::to_string(vocabulary_size));
     }
-    if (e.word <= previous) throw std::invalid_argument(word + " does not ascend");
+    if (e.word <= previous) refuse(": word " + std::to_string(e.word) + " does not ascend");
     if (e.weight <= 0) {
-      throw std::invalid_argument(word + " has weight " + std::to_string(e.weight) +
-                                  ", above 0 would be right");
+      refuse(": word " + std::to_string(e.word) + " has weight " + std::to_string(e.weight) +
+             ", above 0 would be right");
     }
-    if (e.weight > kMaxTotal - total) {
-      throw std::invalid_argument(name + ": the weights sum to more than 2^62");
-    }
+    if (e.weight > kMaxTotal - total) refuse(": the weights sum to more than 2^62");
     total += e.weight;
     previous = e.word;
   }
@@ -47,8 +49,7 @@ void check(const DescriptorSet& topics) {
   }
   for (size_t r = 0; r < topics.robots.size(); ++r) {
     for (size_t t = 0; t < topics.robots[r].size(); ++t) {
-      check(topics.robots[r][t], topics.vocabulary_size,
-            "robot " + std::to_string(r) + ", topic " + std::to_string(t));
+      check(topics.robots[r][t], topics.vocabulary_size, r, t);
     }
   }
 }

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "shoal/matching/discounted_similarity.h"
 
+#include <algorithm>
 #include <cmath>
 #include <span>
+
+#include "shoal/matching/row_products.h"
 
 namespace shoal::matching {
 namespace {
@@ -42,7 +45,14 @@ void eachGroup(const Descriptor& topic, const std::vector<Group>& groups, Visit 
 }
 
 int32_t root(int64_t probability) {
-  return static_cast<int32_t>(std::llround(std::sqrt(static_cast<double>(probability)))) >> kRootBits;
+  return static_cast<int32_t>(std::sqrt(static_cast<double>(probability)) + 0.5) >> kRootBits;
+}
+
+// (weight * kOne + more) / whole for more in [0, 100 kOne]; by 64 bits where these are enough.
+int64_t part(int64_t weight, int64_t more, int64_t whole) {
+  constexpr int64_t kSmall = 1023;
+  if (weight <= kSmall) return (weight * kOne + more) / whole;
+  return static_cast<int64_t>((Wide{weight} * kOne + more) / whole);
 }
 
 // Mean probability of every word within its group, in parts of kOne.
@@ -57,7 +67,7 @@ std::vector<int64_t> background(const std::vector<const Descriptor*>& topics,
     eachGroup(*topic, groups, [&](size_t g, std::span<const Descriptor::Entry> entries, int64_t total) {
       if (total > 0) votes[g] += 4;
       for (const Descriptor::Entry& e : entries)
-        sum[static_cast<size_t>(e.word)] += 4 * (Wide{e.weight} * kOne / total);
+        sum[static_cast<size_t>(e.word)] += 4 * Wide{part(e.weight, 0, total)};
     });
   }
   std::vector<int64_t> mean(vocabulary);
@@ -68,24 +78,17 @@ std::vector<int64_t> background(const std::vector<const Descriptor*>& topics,
   return mean;
 }
 
-// sqrt(φ) - sqrt(b) of one topic.
+// sqrt(φ) - sqrt(b) of one topic: whole numbers within ±2^20.
 void contrast(const Descriptor& topic, const std::vector<Group>& groups, const std::vector<int64_t>& mean,
-              std::span<int32_t> row) {
+              const std::vector<int32_t>& root_of_mean, double* row) {
   eachGroup(topic, groups, [&](size_t g, std::span<const Descriptor::Entry> entries, int64_t total) {
     auto e = entries.begin();
     for (int32_t word = groups[g].first; word < groups[g].end; ++word) {
       const auto w = static_cast<size_t>(word);
       const int64_t weight = e != entries.end() && e->word == word ? e++->weight : 0;
-      const Wide mixed = (Wide{weight} * kOne + Wide{kPriorWords} * mean[w]) / (Wide{total} + kPriorWords);
-      row[w] = root(static_cast<int64_t>(mixed)) - root(mean[w]);
+      row[w] = root(part(weight, kPriorWords * mean[w], total + kPriorWords)) - root_of_mean[w];
     }
   });
-}
-
-int64_t dot(std::span<const int32_t> a, std::span<const int32_t> b) {
-  int64_t sum = 0;  // 2^40 at most a word, and at most 2^21 words
-  for (size_t w = 0; w < a.size(); ++w) sum += int64_t{a[w]} * b[w];
-  return sum;
 }
 
 }  // namespace
@@ -98,22 +101,37 @@ PairTable discountedSimilarity(const DescriptorSet& set) {
   const auto vocabulary = static_cast<size_t>(set.vocabulary_size);
   const std::vector<int64_t> mean = background(topics, groups, vocabulary);
 
-  std::vector<int32_t> rows(topics.size() * vocabulary);
-  const auto row = [&](size_t i) { return std::span(rows).subspan(i * vocabulary, vocabulary); };
-  std::vector<double> length(topics.size());
-  for (size_t i = 0; i < topics.size(); ++i) {
-    contrast(*topics[i], groups, mean, row(i));
-    length[i] = std::sqrt(static_cast<double>(dot(row(i), row(i))));
+  std::vector<int32_t> root_of_mean;
+  for (const int64_t m : mean) root_of_mean.push_back(root(m));
+
+  WholeRows rows(topics.size(), vocabulary);
+  for (size_t i = 0; i < topics.size(); ++i) contrast(*topics[i], groups, mean, root_of_mean, rows.row(i));
+  constexpr size_t kBlock = WholeRows::kBlock;
+  std::vector<double> length(rows.numBlocks() * kBlock);
+  for (size_t block = 0; block < rows.numBlocks(); ++block) {
+    const auto squares = rows.products(block, block);
+    for (size_t k = 0; k < kBlock; ++k)
+      length[block * kBlock + k] = std::sqrt(static_cast<double>(squares[k][k]));
   }
 
   PairTable table(static_cast<int>(topics.size()));
-  for (size_t i = 0; i < topics.size(); ++i) {
-    for (size_t j = 0; j < i; ++j) {
-      const double lengths = length[i] * length[j];
-      const double cosine = lengths > 0 ? static_cast<double>(dot(row(i), row(j))) / lengths : 0.0;
-      const double bounded = std::fmin(std::fmax(cosine, -1.0), 1.0);
-      table.at(static_cast<int>(i), static_cast<int>(j)) = static_cast<int32_t>(std::lround(bounded * 1e9));
+  const auto fill = [&](size_t a, size_t b) {
+    const auto dot = rows.products(a, b);
+    for (size_t i = a * kBlock; i < std::min(topics.size(), (a + 1) * kBlock); ++i) {
+      for (size_t j = b * kBlock; j < std::min(i, (b + 1) * kBlock); ++j) {
+        const double lengths = length[i] * length[j];
+        const double cosine =
+            lengths > 0 ? static_cast<double>(dot[i - a * kBlock][j - b * kBlock]) / lengths : 0.0;
+        const double bounded = std::fmin(std::fmax(cosine, -1.0), 1.0);
+        table.at(static_cast<int>(i), static_cast<int>(j)) = static_cast<int32_t>(std::lround(bounded * 1e9));
+      }
     }
+  };
+  constexpr size_t kNear = 8;  // blocks that stay in a core's own cache while all others pass by
+  for (size_t first = 0; first < rows.numBlocks(); first += kNear) {
+    const size_t end = std::min(rows.numBlocks(), first + kNear);
+    for (size_t b = 0; b < end; ++b)
+      for (size_t a = std::max(first, b); a < end; ++a) fill(a, b);
   }
   return table;
 }

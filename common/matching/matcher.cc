@@ -20,11 +20,14 @@ namespace {
 constexpr const char* kDiscounted = "discounted";
 
 Clustering matchGraph(const AssociationGraph& graph, const MatcherOptions& options,
-                      const PairConstraints& constraints) {
+                      const PairConstraints& constraints, MatchMemory* memory) {
   if (options.matcher == "components") return matchByComponents(graph, constraints);
   ClearOptions clear;
   clear.distinct = options.keepsOwnApart();
-  return rectify(graph, clear, constraints);
+  if (memory == nullptr) return rectify(graph, clear, constraints);
+  Clustering clustering = rectify(graph, clear, constraints, &memory->spectra);
+  memory->spectra.forgetUnused();
+  return clustering;
 }
 
 std::vector<int> ownersOf(const DescriptorSet& topics) {
@@ -132,7 +135,7 @@ std::optional<double> parseSigma(const std::string& text) {
 }
 
 Clustering match(const DescriptorSet& topics, const MatcherOptions& options,
-                 const PairConstraints& constraints) {
+                 const PairConstraints& constraints, MatchMemory* memory) {
   check(options);
   check(topics);
   if (options.matcher == "id") return repaired(topics, matchById(topics), constraints);
@@ -143,14 +146,16 @@ Clustering match(const DescriptorSet& topics, const MatcherOptions& options,
         if (options.matcher == "shoal") return matchShoal(worded, sigma, distinct, kept);
         if (options.similarity == kDiscounted) {
           return matchGraph(associationGraph(worded, discountedSimilarity(worded), sigma, !distinct), options,
-                            kept);
+                            kept, memory);
         }
         const Similarity similarity = similarityNamed(options.similarity);
         if (options.matcher == "hungarian")
           return repaired(worded, matchSequentially(worded, similarity), kept);
         if (options.matcher == "incremental")
           return repaired(worded, matchIncrementally(worded, similarity, sigma), kept);
-        return matchGraph(associationGraph(worded, similarity, sigma, !distinct), options, kept);
+        NeighbourMemory* const neighbours = memory == nullptr ? nullptr : &memory->neighbours;
+        return matchGraph(associationGraph(worded, similarity, sigma, !distinct, neighbours), options, kept,
+                          memory);
       });
 }
 
@@ -162,7 +167,7 @@ Clustering match(const AssociationGraph& graph, const MatcherOptions& options,
         "matcher \"" + options.matcher +
         "\" looks at the topics themselves and cannot match a graph; \"clear\" and \"components\" can");
   }
-  return matchGraph(graph, options, constraints);
+  return matchGraph(graph, options, constraints, nullptr);
 }
 
 }  // namespace shoal::matching

@@ -9,6 +9,7 @@
 #include "shoal/matching/association_graph.h"
 #include "shoal/matching/clustering.h"
 #include "shoal/matching/descriptors.h"
+#include "shoal/matching/match_memory.h"
 #include "shoal/matching/pair_constraints.h"
 #include "shoal/matching/similarity.h"
 
@@ -63,10 +64,13 @@ std::optional<double> parseSigma(const std::string& text);
 /// for edges; "id", "hungarian" and "incremental" know nothing of them, and what they say is repaired
 /// (pair_constraints.h).
 ///
+/// @param memory  when not null: what the last matching found is not worked out again, and this one's is
+/// kept. Changes no answer. "clear" and "components" on a similarity of two topics gain by it; the discounted
+/// one depends on all topics and is made anew.
 /// @throws std::invalid_argument naming the option, the descriptor or the constraint that is wrong, and what
 /// would be right.
 Clustering match(const DescriptorSet& topics, const MatcherOptions& options,
-                 const PairConstraints& constraints = {});
+                 const PairConstraints& constraints = {}, MatchMemory* memory = nullptr);
 
 /// The same on an association graph whose edges are given. Only matchers that look at nothing else
 /// ("clear", "components") can do this; others are refused by name.

@@ -42,14 +42,18 @@ bool isClique(const Sparse& block) {
 }
 
 // All eigenpairs of L on one component with eigenvalue below `bound`, and the one at 0.
-ComponentSpectrum componentSpectrum(const std::vector<int>& vertices, const Sparse& block, double bound) {
+ComponentSpectrum componentSpectrum(const std::vector<int>& vertices, const Sparse& block, double bound,
+                                    SpectrumMemory* memory) {
   const auto size = static_cast<Eigen::Index>(vertices.size());
   if (size == 1 || (bound < 1.0 && isClique(block))) {
     return {vertices, Eigen::VectorXd::Zero(1),
             Eigen::MatrixXd::Constant(size, 1, 1.0 / std::sqrt(static_cast<double>(size)))};
   }
   // Not closer to 0 than round-off, so that the eigenvalue 0 is always among them.
-  Eigenpairs pairs = eigenpairsAbove(block, 1.0 - std::max(bound, 1e-9));
+  const double above = 1.0 - std::max(bound, 1e-9);
+  Eigenpairs pairs = memory == nullptr
+                         ? eigenpairsAbove(block, above)
+                         : memory->remember(block, above, [&] { return eigenpairsAbove(block, above); });
   SHOAL_DEMAND(pairs.values.size() > 0);
   Eigen::VectorXd eigenvalues = (1.0 - pairs.values.array()).max(0.0);
   eigenvalues[0] = 0.0;
@@ -124,14 +128,14 @@ std::vector<std::vector<int>> connectedComponents(const Sparse& matrix) {
   return components;
 }
 
-SmallEnd smallEnd(const Sparse& laplacian, double bound, int at_least) {
+SmallEnd smallEnd(const Sparse& laplacian, double bound, int at_least, SpectrumMemory* memory) {
   SHOAL_DEMAND(at_least <= laplacian.rows());
   SmallEnd end;
   std::vector<int> position(static_cast<size_t>(laplacian.rows()));
   std::vector<Sparse> blocks;
   for (const std::vector<int>& vertices : connectedComponents(laplacian)) {
     blocks.push_back(complement(laplacian, vertices, position));
-    end.components.push_back(componentSpectrum(vertices, blocks.back(), bound));
+    end.components.push_back(componentSpectrum(vertices, blocks.back(), bound, memory));
   }
   end.num_below = end.num_kept = numKept(end.components);
   if (end.num_below >= at_least) return end;
@@ -139,7 +143,7 @@ SmallEnd smallEnd(const Sparse& laplacian, double bound, int at_least) {
   // Too few: raise the bound until there are enough, and the eigenspace at the cut is complete.
   for (double higher = bound + 0.05; end.num_kept < at_least; higher += 0.05) {
     for (size_t c = 0; c < blocks.size(); ++c) {
-      end.components[c] = componentSpectrum(end.components[c].vertices, blocks[c], higher);
+      end.components[c] = componentSpectrum(end.components[c].vertices, blocks[c], higher, memory);
     }
     end.num_kept = numKept(end.components);
   }

@@ -5,6 +5,8 @@
 #include <Eigen/SparseCore>
 #include <vector>
 
+#include "shoal/matching/spectrum_memory.h"
+
 namespace shoal::matching {
 
 /// The small end of the spectrum of one connected component.
@@ -32,10 +34,12 @@ struct SmallEnd {
 /// @param laplacian  n×n, from normalizedLaplacian().
 /// @param bound      > 0. The eigenvalue 0 of each component counts as below whatever round-off says.
 /// @param at_least   <= n.
+/// @param memory     when not null: components that it knows are not solved again.
 ///
 /// Cost: O(s³) for a component of s <= 300 vertices, two to four products with the Laplacian a pair above;
 /// cliques of unit weight and single vertices by closed form. Memory O(nnz + Σ s·c). Never n×n.
-SmallEnd smallEnd(const Eigen::SparseMatrix<double>& laplacian, double bound, int at_least);
+SmallEnd smallEnd(const Eigen::SparseMatrix<double>& laplacian, double bound, int at_least,
+                  SpectrumMemory* memory = nullptr);
 
 /// The vertex sets of the connected components of a symmetric matrix, by lowest vertex, each ascending. Every
 /// stored entry joins.

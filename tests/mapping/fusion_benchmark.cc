@@ -7,6 +7,7 @@
 
 #include <sys/wait.h>
 
+#include <bit>
 #include <cmath>
 #include <cstdlib>
 #include <map>
@@ -143,6 +144,41 @@ void OctoMap(benchmark::State& state, bool relief, bool warm) {
     }
   });
 }
+
+// The maps of the robots are trees too, and time is what the tree knows as occupancy: leaf by leaf the newest
+// wins.
+void OctoMapTrees(benchmark::State& state, bool relief, bool warm) {
+  struct Tree : octomap::ColorOcTree {
+    Tree() : octomap::ColorOcTree(1.0) {
+      setClampingThresMin(0.0);
+      setClampingThresMax(1.0);
+    }
+  };
+  std::vector<std::unique_ptr<Tree>> robots;
+  for (int32_t r = 0; r < kRobots; ++r) {
+    Tree& tree = *robots.emplace_back(std::make_unique<Tree>());
+    eachCell(r, relief, kWindow, [&](const CellIndex& c, TopicId topic, world::Timestamp seen) {
+      const octomap::OcTreeKey key(static_cast<uint16_t>(32768 + c.x), static_cast<uint16_t>(32768 + c.y),
+                                   static_cast<uint16_t>(32768 + c.z));
+      tree.setNodeValue(key, static_cast<float>(seen.us / 1'000'000), true)
+          ->setColor(static_cast<uint8_t>(number(topic)), 0, 0);
+    });
+  }
+  run<Tree>(state, kRobots * double{kWindow} * kWindow, warm, [&](Tree& merged) {
+    for (int32_t r = 0; r < kRobots; ++r) {
+      Tree& own = *robots[static_cast<size_t>(r)];
+      for (auto leaf = own.begin_leafs(), end = own.end_leafs(); leaf != end; ++leaf) {
+        const octomap::OcTreeKey key = leaf.getKey();
+        const octomap::ColorOcTreeNode* held = merged.search(key);
+        if (held != nullptr && held->getValue() > leaf->getValue()) continue;
+        const auto label = static_cast<uint32_t>(number(labelOf(r, TopicId{leaf->getColor().r})));
+        merged.setNodeValue(key, leaf->getValue(), true)
+            ->setColor(static_cast<uint8_t>(label >> 16), static_cast<uint8_t>(label >> 8),
+                       static_cast<uint8_t>(label));
+      }
+    }
+  });
+}
 #endif
 
 // The tiles that all robots have filled, ready to be folded.
@@ -170,18 +206,26 @@ void Tiles(benchmark::State& state, bool relief, bool warm) {
     std::vector<Label> labels;
     std::vector<TileColumns> newest;
   };
+  std::vector<MapTile*> row;
+  for (auto& [index, tile] : tiles) row.push_back(&tile);
   std::vector<GlobalLabel> of_voice;
   run<Merged>(state, kRobots * double{kWindow} * kWindow, warm, [&](Merged& merged) {
     merged.labels.resize(tiles.size());
     if (!warm) merged.newest.resize(tiles.size());
     size_t t = 0;
-    for (auto& [index, tile] : tiles) {
+    for (MapTile* at : row) {
+      MapTile& tile = *at;
+      if (t + 8 < row.size()) __builtin_prefetch(row[t + 8]);
+      if (t + 4 < row.size()) row[t + 4]->prefetch();
       tile.fold({});
       of_voice.clear();
       for (const Voice& voice : tile.voices()) of_voice.push_back(labels.of(voice));
       const TileColumns& newest = tile.newest();
       Label& label = merged.labels[t];
-      for (size_t i = 0; i < kTileCells; ++i) label[i] = of_voice[newest.voice[i]];
+      for (unsigned rows = tile.rowsShown(); rows != 0; rows &= rows - 1) {
+        const auto first = static_cast<size_t>(std::countr_zero(rows)) * kTileEdge;
+        for (size_t i = first; i < first + kTileEdge; ++i) label[i] = of_voice[newest.voice[i]];
+      }
       if (!warm) merged.newest[t] = newest;  // where the tiles' own memory would be fresh too
       ++t;
     }
@@ -320,9 +364,11 @@ BOTH_WAYS(Tiles, 5);
 BOTH_WAYS(UnorderedMap, 2);
 #ifdef SHOAL_HAS_OCTOMAP
 BOTH_WAYS(OctoMap, 1);
+BOTH_WAYS(OctoMapTrees, 1);
 #endif
 
-const char* const kNames[] = {"OneMoreBrick", "WholeFusedMap", "Tiles", "UnorderedMap", "OctoMap"};
+const char* const kNames[] = {"OneMoreBrick", "WholeFusedMap", "Tiles",
+                              "UnorderedMap", "OctoMap",       "OctoMapTrees"};
 
 }  // namespace
 

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "shoal/random.h"
@@ -61,6 +63,66 @@ TEST(DiscountedSimilarityTest, IsWhatItsDefinitionSays) {
       for (size_t j = 0; j < i; ++j)
         EXPECT_NEAR(table.at(static_cast<int>(i), static_cast<int>(j)) / 1e9, expected(topics, 4, i, j),
                     2e-5);
+  }
+}
+
+// The same in whole numbers, as plainly as can be: what every build and machine must find, to the last unit.
+PairTable inWholeNumbers(const std::vector<std::vector<int64_t>>& topics, size_t split) {
+  __extension__ using Wide = __int128;
+  constexpr int64_t kOne = int64_t{1} << 52;
+  const size_t words = topics[0].size();
+  const auto rootOf = [](Wide p) { return std::llround(std::sqrt(static_cast<double>(p))) >> 6; };
+  std::vector<std::vector<int64_t>> row(topics.size(), std::vector<int64_t>(words));
+  for (const auto& [first, end] : {std::pair(size_t{0}, split), std::pair(split, words)}) {
+    std::vector<int64_t> total(topics.size());
+    for (size_t t = 0; t < topics.size(); ++t)
+      for (size_t w = first; w < end; ++w) total[t] += topics[t][w];
+    for (size_t w = first; w < end; ++w) {
+      Wide sum = kOne / static_cast<int64_t>(end - first), votes = 1;
+      for (size_t t = 0; t < topics.size(); ++t) {
+        if (total[t] == 0) continue;
+        sum += 4 * (Wide{topics[t][w]} * kOne / total[t]);
+        votes += 4;
+      }
+      const Wide mean = sum / votes;
+      for (size_t t = 0; t < topics.size(); ++t)
+        row[t][w] = rootOf((Wide{topics[t][w]} * kOne + 100 * mean) / (Wide{total[t]} + 100)) - rootOf(mean);
+    }
+  }
+  PairTable table(static_cast<int>(topics.size()));
+  const auto dot = [&](size_t i, size_t j) {
+    int64_t sum = 0;
+    for (size_t w = 0; w < words; ++w) sum += row[i][w] * row[j][w];
+    return static_cast<double>(sum);
+  };
+  for (size_t i = 0; i < topics.size(); ++i) {
+    for (size_t j = 0; j < i; ++j) {
+      const double lengths = std::sqrt(dot(i, i)) * std::sqrt(dot(j, j));
+      const double cosine = lengths > 0 ? dot(i, j) / lengths : 0;
+      table.at(static_cast<int>(i), static_cast<int>(j)) =
+          static_cast<int32_t>(std::lround(std::clamp(cosine, -1.0, 1.0) * 1e9));
+    }
+  }
+  return table;
+}
+
+TEST(DiscountedSimilarityTest, IsTheSameToTheLastUnitHoweverItIsWorkedOut) {
+  for (uint64_t seed = 0; seed < 60; ++seed) {
+    SCOPED_TRACE(seed);
+    Random random(seed, 1);
+    const size_t words = 2 + random.below(40), split = 1 + random.below(words - 1);
+    std::vector<std::vector<int64_t>> topics(1 + random.below(14), std::vector<int64_t>(words));
+    DescriptorSet set{static_cast<int32_t>(words), {0, static_cast<int32_t>(split)}, {{}}};
+    for (std::vector<int64_t>& topic : topics) {
+      // Up to 2^44 of a word: more than 64 bits hold of its share; topics without words in a group or at all.
+      const uint64_t most = uint64_t{1} << (4 * random.below(12));
+      for (size_t w = random.below(3) == 0 ? split : 0; w < words && most > 1; ++w)
+        if (random.below(3) > 0) topic[w] = static_cast<int64_t>(random.below(most));
+      set.robots[0].push_back(descriptor(topic));
+    }
+    const PairTable table = discountedSimilarity(set), plain = inWholeNumbers(topics, split);
+    for (int i = 0; i < table.size(); ++i)
+      for (int j = 0; j < i; ++j) ASSERT_EQ(table.at(i, j), plain.at(i, j)) << i << ", " << j;
   }
 }
 
