@@ -64,8 +64,9 @@ mapping::NodeStatus statusOf(const std::string& node, const wire::Heartbeat& h, 
           .agreement = agreement(h, ours)};
 }
 
-MissionState::MissionState(int32_t mission, const matching::MatcherOptions& matcher, double cell_size_m)
-    : mission_(mission), matcher_(matcher), cell_size_m_(cell_size_m) {
+MissionState::MissionState(int32_t mission, const matching::MatcherOptions& matcher, double cell_size_m,
+                           const mapping::StoreLimits& limits)
+    : mission_(mission), matcher_(matcher), cell_size_m_(cell_size_m), beliefs_(limits) {
   matching::match(matching::DescriptorSet{}, matcher_);  // wrong options are the caller's mistake: say so now
 }
 

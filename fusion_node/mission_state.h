@@ -36,8 +36,10 @@ mapping::NodeStatus statusOf(const std::string& node, const wire::Heartbeat& hea
 class MissionState {
  public:
   /// @param mission  Only messages of this mission enter.
+  /// @param limits   What is held at most of what others say; the rest is counted as "over limit".
   /// @throws std::invalid_argument when the matcher options are wrong.
-  MissionState(int32_t mission, const matching::MatcherOptions& matcher, double cell_size_m = 1.0);
+  MissionState(int32_t mission, const matching::MatcherOptions& matcher, double cell_size_m = 1.0,
+               const mapping::StoreLimits& limits = {});
 
   /// Takes a message in. Refusals are counted in `stats`.
   /// @returns true when it holds state that was not held before.

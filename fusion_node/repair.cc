@@ -139,6 +139,7 @@ bool StateHoldings::isStillSaid(int32_t share) {
 // hold more than we do.
 bool StateHoldings::isDoubted(int32_t share) {
   const world::RobotId robot{share};
+  if (state_.beliefs().isFull(robot)) return false;  // there is no room for what we lack
   const uint32_t mine = wire::shareDigest(state_.beliefs().digestOf(robot));
   std::vector<uint32_t> others;
   const bool has_owner = robot != mapping::kOperators;

@@ -30,16 +30,21 @@ std::string budgetUsed(const Json& n) {
   return allowed > 0 ? fmt::format("{:.0f}%", 100 * n["bytes_sent"].get<double>() / allowed) : "-";
 }
 
+// How long it takes to say what waits.
+std::string timeToClear(const Json& n) {
+  return n["budget"].get<int64_t>() == 0 ? "-" : fmt::format("{:.0f}", n["clear_s"].get<double>());
+}
+
 void printRow(const Json& n) {
   const bool flies = n["phase"] != "node";
   const std::string images =
       fmt::format("{}/{}", n["observation"].get<int>() + 1, n["num_observations"].get<int>());
   const std::string told = !flies ? "-" : n["heard_whole"].get<bool>() ? "all" : "part";
   const std::string agreement = n["agreement"];
-  fmt::print("{:<9} {:<7} {:>8.1f} {:>7} {:>6} {:>6} {:>5} {:>6} {:>4} {:<4} {}\n",
+  fmt::print("{:<9} {:<7} {:>8.1f} {:>7} {:>6} {:>6} {:>5} {:>6} {:>6} {:>4} {:<4} {}\n",
              n["name"].get<std::string>(), n["phase"].get<std::string>(), n["heard_s"].get<double>(),
              flies ? images : "-", n["topics"].get<int>(), n["cells"].get<int>(), budgetUsed(n),
-             n["queue_bytes"].get<int>(), n["rejected"].get<int>(), told,
+             n["queue_bytes"].get<int>(), timeToClear(n), n["rejected"].get<int>(), told,
              agreement == "none"    ? "-"
              : agreement == "other" ? alarming("OTHER")
                                     : agreement);
@@ -60,8 +65,8 @@ void print(const Json& a) {
                    ? alarming(", NOT THE ONE THIS NODE WAS GIVEN: " + (*library)["given"].get<std::string>())
                    : "");
   }
-  fmt::print("{:<9} {:<7} {:>8} {:>7} {:>6} {:>6} {:>5} {:>6} {:>4} {:<4} {}\n", "node", "phase", "heard s",
-             "images", "topics", "cells", "used", "queue", "bad", "told", "map");
+  fmt::print("{:<9} {:<7} {:>8} {:>7} {:>6} {:>6} {:>5} {:>6} {:>6} {:>4} {:<4} {}\n", "node", "phase",
+             "heard s", "images", "topics", "cells", "used", "queue", "clear", "bad", "told", "map");
   for (const Json& n : a["nodes"]) printRow(n);
   for (const Json& m : a["mixed"])
     fmt::print("{:<9} {}: {}\n", m["node"].get<std::string>(), alarming(m["kind"].get<std::string>()),
@@ -104,7 +109,9 @@ void addStatusCommand(CLI::App& app, Action& chosen) {
       ->check(CLI::Range(0.1, 3600.0))
       ->capture_default_str();
   command->footer(
-      "used: bytes sent of what the budget allowed so far. queue: bytes that wait. bad: messages refused.\n"
+      "used: bytes sent of what the budget allowed so far. queue: bytes that wait. clear: seconds until "
+      "they\n"
+      "are said, if nothing new comes. bad: messages refused.\n"
       "told: whether all that a robot has to say was heard. map: the same as this one, made of another\n"
       "state (behind), or OTHER though made of the same state: an alarm, unless a recording was asked with\n"
       "another --matcher than the mission's. Below the table: clocks that are off, twins, other missions, "

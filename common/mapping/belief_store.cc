@@ -11,7 +11,60 @@ namespace {
 // Versions that wait for their part 0. More than a few means a peer that never sends it.
 constexpr size_t kMaxPendingVersions = 8;
 
+// Of a part, whatever it holds: itself, its nodes in maps here, its leaf and name in digest trees.
+constexpr int64_t kHeldBytesPerPart = 320;
+
+template <typename T>
+int64_t sizeOf(const std::vector<T>& list, int64_t each) {
+  return static_cast<int64_t>(list.size()) * each;
+}
+
+int64_t contentBytes(const TopicPart& part) { return sizeOf(part.group_sizes, 4) + sizeOf(part.words, 8); }
+int64_t contentBytes(const BrickPart& part) { return sizeOf(part.cells, 24); }
+int64_t contentBytes(const CertaintyPart& part) { return sizeOf(part.cells, 16); }
+int64_t contentBytes(const PicturePart& part) { return sizeOf(part.layer, 1); }
+int64_t contentBytes(const SettingsPart&) { return 0; }
+int64_t contentBytes(const Edit&) { return 256; }  // names are short
+
+int64_t sumOf(const std::map<int32_t, Piece>& parts) {
+  int64_t bytes = 0;
+  for (const auto& [part, piece] : parts) bytes += heldBytes(piece);
+  return bytes;
+}
+
 }  // namespace
+
+int64_t heldBytes(const Piece& piece) {
+  return kHeldBytesPerPart +
+         std::visit([](const auto& content) { return contentBytes(content); }, piece.content);
+}
+
+// Within what is set aside for it a robot has room always. Beyond, together with all others.
+bool BeliefStore::hasRoom(const RobotSum& sum, int64_t more) const {
+  const int64_t bytes = sum.bytes + more;
+  if (bytes > limits_.max_bytes_per_robot) return false;
+  const auto shared = [this](int64_t held) { return std::max<int64_t>(held - setAside(), 0); };
+  const int64_t most = limits_.max_bytes - limits_.max_robots * setAside();
+  return shared(bytes) == 0 || shared_bytes_ - shared(sum.bytes) + shared(bytes) <= most;
+}
+
+void BeliefStore::charge(RobotSum& sum, int64_t more) {
+  shared_bytes_ -= std::max<int64_t>(sum.bytes - setAside(), 0);
+  sum.bytes += more;
+  bytes_ += more;
+  shared_bytes_ += std::max<int64_t>(sum.bytes - setAside(), 0);
+  if (more < 0) sum.full = false;
+}
+
+// What goes when a piece comes that is news: all that is older than a new version's part 0.
+int64_t BeliefStore::bytesReplacedBy(const Piece& piece) const {
+  const auto slot = slots_.find(piece.key);
+  if (slot == slots_.end() || piece.part != 0 || piece.version == slot->second.version) return 0;
+  int64_t bytes = sumOf(slot->second.parts);
+  for (const auto& [version, parts] : slot->second.pending)
+    if (version < piece.version) bytes += sumOf(parts);
+  return bytes;
+}
 
 Applied BeliefStore::apply(const Piece& piece) {
   const world::RobotId robot = piece.key.robot;
@@ -23,31 +76,52 @@ Applied BeliefStore::apply(const Piece& piece) {
   if (piece.version.epoch < sum->second.epoch) return Applied::kOld;
   if (piece.version.epoch > sum->second.epoch) beginEpoch(robot, sum->second, piece.version.epoch);
   auto found = slots_.find(piece.key);
-  if (found == slots_.end()) {
-    const int64_t most = robot == kOperators ? limits_.max_edits : limits_.max_pieces_per_robot;
-    if (sum->second.pieces >= most) return Applied::kRejected;
+  if (found != slots_.end()) {
+    if (piece.version < found->second.version) return Applied::kOld;
+    if (const auto known = compareToHeld(found->second, piece)) return *known;
+  }
+  const bool is_new_key = found == slots_.end();
+  const int64_t most = robot == kOperators ? limits_.max_edits : limits_.max_pieces_per_robot;
+  if (is_new_key && sum->second.pieces >= most) return Applied::kRejected;
+  const int64_t bytes = heldBytes(piece) + (is_new_key ? kHeldBytesPerKey : 0);
+  if (!hasRoom(sum->second, bytes) && !hasRoom(sum->second, bytes - bytesReplacedBy(piece))) {
+    sum->second.full = true;
+    return Applied::kRejected;
+  }
+  if (is_new_key) {
     ++sum->second.pieces;
     found = slots_.emplace(piece.key, Slot{}).first;
   }
+  charge(sum->second, bytes);
   Slot& slot = found->second;
-  if (piece.version < slot.version) return Applied::kOld;
-
   auto& parts = piece.version == slot.version ? slot.parts : slot.pending[piece.version];
-  if (!parts.empty() && parts.begin()->second.num_parts != piece.num_parts) return Applied::kConflict;
-  const auto [held, inserted] = parts.emplace(piece.part, piece);
-  if (!inserted) return held->second == piece ? Applied::kDuplicate : Applied::kConflict;
+  parts.emplace(piece.part, piece);
   if (piece.version == slot.version) {
     sum->second.digest += contentHash(piece);
     noteChange(piece.key, slot);
     return Applied::kNew;
   }
   if (piece.part != 0) {
-    if (slot.pending.size() > kMaxPendingVersions) slot.pending.erase(slot.pending.begin());
+    if (slot.pending.size() > kMaxPendingVersions) {
+      charge(sum->second, -sumOf(slot.pending.begin()->second));
+      slot.pending.erase(slot.pending.begin());
+    }
     return Applied::kPending;
   }
   promote(slot, piece.version);
   noteChange(piece.key, slot);
   return Applied::kNew;
+}
+
+// Whether a piece, no older than what the slot holds, is held already or contradicts what is; else nothing.
+std::optional<Applied> BeliefStore::compareToHeld(const Slot& slot, const Piece& piece) {
+  const auto waiting = slot.pending.find(piece.version);
+  if (piece.version != slot.version && waiting == slot.pending.end()) return std::nullopt;
+  const auto& parts = piece.version == slot.version ? slot.parts : waiting->second;
+  if (!parts.empty() && parts.begin()->second.num_parts != piece.num_parts) return Applied::kConflict;
+  const auto held = parts.find(piece.part);
+  if (held == parts.end()) return std::nullopt;
+  return held->second == piece ? Applied::kDuplicate : Applied::kConflict;
 }
 
 void BeliefStore::noteEpoch(world::RobotId robot, int32_t epoch) {
@@ -63,7 +137,8 @@ void BeliefStore::beginEpoch(world::RobotId robot, RobotSum& sum, int32_t epoch)
   for (auto slot = first; slot != last; ++slot) changes_.erase(slot->second.changed);
   slots_.erase(first, last);
   ++revision_;
-  sum = {0, 0, epoch};
+  charge(sum, -sum.bytes);
+  sum = {.epoch = epoch};
 }
 
 // Part 0 of a newer version has come: it is what the slot now holds, and all that is older goes.
@@ -71,6 +146,9 @@ void BeliefStore::promote(Slot& slot, world::Version version) {
   const auto newer = slot.pending.find(version);
   RobotSum& sum = sums_.at(newer->second.begin()->second.key.robot);
   for (const auto& [part, piece] : slot.parts) sum.digest -= contentHash(piece);
+  int64_t gone = sumOf(slot.parts);
+  for (auto older = slot.pending.begin(); older != newer; ++older) gone += sumOf(older->second);
+  charge(sum, -gone);
   slot.version = version;
   slot.parts = std::move(newer->second);
   for (const auto& [part, piece] : slot.parts) sum.digest += contentHash(piece);
@@ -99,6 +177,16 @@ const Piece* BeliefStore::find(const PieceKey& key, int32_t part) const {
 int32_t BeliefStore::epochOf(world::RobotId robot) const {
   const auto sum = sums_.find(robot);
   return sum == sums_.end() ? -1 : sum->second.epoch;
+}
+
+int64_t BeliefStore::numBytesOf(world::RobotId robot) const {
+  const auto sum = sums_.find(robot);
+  return sum == sums_.end() ? 0 : sum->second.bytes;
+}
+
+bool BeliefStore::isFull(world::RobotId robot) const {
+  const auto sum = sums_.find(robot);
+  return sum != sums_.end() && sum->second.full;
 }
 
 uint64_t BeliefStore::digestOf(world::RobotId robot) const {

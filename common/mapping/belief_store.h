@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "shoal/mapping/piece.h"
@@ -17,15 +19,24 @@ enum class Applied {
   kOld,        ///< a newer version is held, or a newer epoch of the robot was heard
   kPending,    ///< of a newer version whose part 0 has not come yet
   kConflict,   ///< same key, version and part, other content: two processes with one robot id. Kept out.
-  kRejected    ///< over a limit (too many robots or pieces). Kept out.
+  kRejected    ///< over a limit (too many robots, pieces or bytes). Kept out.
 };
 
-/// Caps that keep a hostile or broken peer from exhausting memory.
+/// Caps that keep a hostile or broken peer from exhausting memory. Of `max_bytes` one half is set aside in
+/// equal shares, one for each of `max_robots`, that nobody else can use up; the other half goes to who comes
+/// first.
 struct StoreLimits {
   int32_t max_robots = 255;  ///< as many as a tile of the fused map has room for
   int64_t max_pieces_per_robot = 1'000'000;
   int64_t max_edits = 10'000;
+  int64_t max_bytes = int64_t{512} << 20;            ///< as heldBytes() counts
+  int64_t max_bytes_per_robot = int64_t{128} << 20;  ///< three million cells
 };
+
+/// What holding a piece takes, about, with what nodes keep beside it to compare it: of its content, and for
+/// being a piece at all. The same on every machine.
+int64_t heldBytes(const Piece& piece);
+inline constexpr int64_t kHeldBytesPerKey = 256;  ///< once for all parts and versions of a key
 
 /// The replicated state: a join of versioned pieces. For each key it holds the newest version whose part 0
 /// has been heard; parts of different versions never mix. Of each robot it holds one epoch, the newest it has
@@ -101,6 +112,14 @@ class BeliefStore {
 
   size_t numPieces() const { return slots_.size(); }
 
+  /// What is held, pieces that wait for their part 0 included; of all, and of one robot.
+  int64_t numBytes() const { return bytes_; }
+  int64_t numBytesOf(world::RobotId robot) const;
+
+  /// A piece of the robot was refused for lack of room, and nothing of it has gone since: asking for what
+  /// lacks is in vain.
+  bool isFull(world::RobotId robot) const;
+
  private:
   static constexpr std::array<int32_t, 3> kLowestIndex{INT32_MIN, INT32_MIN, INT32_MIN};
 
@@ -114,7 +133,14 @@ class BeliefStore {
     uint64_t digest = 0;
     int64_t pieces = 0;
     int32_t epoch = -1;  // the newest heard of
+    int64_t bytes = 0;
+    bool full = false;
   };
+  int64_t setAside() const { return limits_.max_bytes / 2 / std::max(limits_.max_robots, 1); }
+  bool hasRoom(const RobotSum& sum, int64_t more) const;
+  void charge(RobotSum& sum, int64_t more);
+  int64_t bytesReplacedBy(const Piece& piece) const;
+  static std::optional<Applied> compareToHeld(const Slot& slot, const Piece& piece);
   void beginEpoch(world::RobotId robot, RobotSum& sum, int32_t epoch);
   void promote(Slot& slot, world::Version version);
   void noteChange(const PieceKey& key, Slot& slot);
@@ -122,6 +148,8 @@ class BeliefStore {
   StoreLimits limits_;
   std::map<PieceKey, Slot> slots_;
   std::map<world::RobotId, RobotSum> sums_;
+  int64_t bytes_ = 0;
+  int64_t shared_bytes_ = 0;  // of robots, what is beyond what is set aside for each
   uint64_t revision_ = 0;
   std::map<uint64_t, PieceKey> changes_;  // the last of every slot, by its revision
 };

@@ -33,6 +33,7 @@ Json toJson(const NodeStatus& n) {
           {"bytes_sent", n.bytes_sent},
           {"budget", n.budget},
           {"queue_bytes", n.queue_bytes},
+          {"clear_s", rounded(n.clearSeconds(), 1e1)},
           {"ms_per_frame", rounded(n.ms_per_frame, 1e2)},
           {"position_m", {rounded(n.x_m, 1e3), rounded(n.y_m, 1e3), rounded(n.z_m, 1e3)}},
           {"rejected", n.rejected},

@@ -102,6 +102,115 @@ TEST(BeliefStoreTest, ARobotsDigestIsTheSumOfItsParts) {
   EXPECT_EQ(store.digestOf(world::RobotId{4}), 0u);
 }
 
+// A brick of robot r with that many cells, whose key nobody else has.
+Piece brickPiece(int r, int brick, int observation, int cells, int part = 0, int num_parts = 1) {
+  BrickPart content;
+  for (int i = 0; i < cells; ++i)
+    content.cells.push_back({{16 * brick + i % 16, i / 16, part}, world::TopicId{0}, {observation}});
+  return {{world::RobotId{r}, PieceKind::kBrick, {brick, 0, 0}}, {0, observation}, part, num_parts, content};
+}
+
+int64_t bytesOfAll(const BeliefStore& store) {
+  int64_t bytes = kHeldBytesPerKey * static_cast<int64_t>(store.numPieces());
+  store.visit([&](const Piece& piece) { bytes += heldBytes(piece); });
+  return bytes;
+}
+
+TEST(BeliefStoreTest, BytesHeldAreThoseOfContentAndAFixedPartAPiece) {
+  const int64_t empty = heldBytes({{}, {}, 0, 1, PicturePart{}});
+  EXPECT_EQ(heldBytes(brickPiece(0, 0, 0, 10)), empty + 10 * 24);
+  EXPECT_GE(24u, sizeof(BrickCell));
+  EXPECT_EQ(heldBytes(topicPiece(0, 0, 0)), empty + 4 + 8);
+  EXPECT_GE(empty, static_cast<int64_t>(sizeof(Piece)));
+  BeliefStore store;
+  store.apply(brickPiece(1, 0, 0, 10));
+  store.apply(brickPiece(1, 0, 0, 10));
+  EXPECT_EQ(store.numBytesOf(world::RobotId{1}), kHeldBytesPerKey + empty + 10 * 24);
+  EXPECT_EQ(store.numBytes(), store.numBytesOf(world::RobotId{1}));
+  EXPECT_EQ(store.numBytesOf(world::RobotId{2}), 0);
+}
+
+// Versions that supersede, parts that wait for ever, conflicts, new epochs: when nothing waits any more, what
+// is counted is what is held.
+TEST(BeliefStoreTest, BytesAreCountedExactlyWhateverComes) {
+  Random random(6);
+  for (int trial = 0; trial < 20; ++trial) {
+    BeliefStore store;
+    for (int i = 0; i < 400; ++i) {
+      const int num_parts = 1 + static_cast<int>(random.below(3));
+      Piece piece = brickPiece(static_cast<int>(random.below(3)), static_cast<int>(random.below(4)),
+                               static_cast<int>(random.below(40)), 1 + static_cast<int>(random.below(30)),
+                               static_cast<int>(random.below(static_cast<uint64_t>(num_parts))), num_parts);
+      if (random.below(100) == 0) piece.version.epoch = 1;
+      store.apply(piece);
+      ASSERT_GE(store.numBytes(), bytesOfAll(store));  // what waits is counted too
+    }
+    for (int r = 0; r < 3; ++r)
+      for (int brick = 0; brick < 4; ++brick) {
+        Piece last = brickPiece(r, brick, 41, 3);
+        last.version.epoch = 2;
+        ASSERT_EQ(store.apply(last), Applied::kNew);
+      }
+    EXPECT_EQ(store.numBytes(), bytesOfAll(store));
+    EXPECT_EQ(store.numBytes(), 12 * (kHeldBytesPerKey + heldBytes(brickPiece(0, 0, 0, 3))));
+  }
+}
+
+TEST(BeliefStoreTest, ARobotThatIsFullMayStillReplaceWhatItSaidWithLess) {
+  const int64_t one = kHeldBytesPerKey + heldBytes(brickPiece(0, 0, 0, 100));
+  BeliefStore store({.max_bytes_per_robot = 2 * one});
+  EXPECT_EQ(store.apply(brickPiece(0, 0, 0, 100)), Applied::kNew);
+  EXPECT_EQ(store.apply(brickPiece(0, 1, 0, 100)), Applied::kNew);
+  EXPECT_FALSE(store.isFull(world::RobotId{0}));
+  EXPECT_EQ(store.apply(brickPiece(0, 2, 0, 1)), Applied::kRejected);
+  EXPECT_EQ(store.apply(brickPiece(0, 1, 1, 101)), Applied::kRejected);
+  EXPECT_TRUE(store.isFull(world::RobotId{0}));
+  EXPECT_EQ(store.apply(brickPiece(0, 1, 0, 100)), Applied::kDuplicate);
+  EXPECT_EQ(store.apply(brickPiece(0, 1, 2, 100)), Applied::kNew);
+  EXPECT_EQ(store.numBytes(), 2 * one);
+  EXPECT_EQ(store.apply(brickPiece(0, 1, 3, 1)), Applied::kNew);
+  EXPECT_FALSE(store.isFull(world::RobotId{0}));
+  EXPECT_EQ(store.apply(brickPiece(0, 2, 3, 1)), Applied::kNew);
+  EXPECT_EQ(store.numPieces(), 3u);
+  EXPECT_EQ(store.numBytes(), bytesOfAll(store));
+}
+
+// Some flood, with whatever wins them room: others have what is set aside for them, whenever they come.
+TEST(BeliefStoreTest, NobodyPushesOutAnothersShare) {
+  const StoreLimits limits{.max_robots = 4, .max_bytes = 80'000, .max_bytes_per_robot = 60'000};
+  Random random(7);
+  for (int trial = 0; trial < 50; ++trial) {
+    BeliefStore store(limits);
+    std::vector<Piece> modest;  // of robot 3, within an eighth
+    int64_t bytes = 0;
+    for (int brick = 0;; ++brick) {
+      const Piece piece = brickPiece(3, brick, 0, 1 + static_cast<int>(random.below(40)));
+      bytes += kHeldBytesPerKey + heldBytes(piece);
+      if (bytes > limits.max_bytes / 2 / limits.max_robots) break;
+      modest.push_back(piece);
+    }
+    size_t said = 0;
+    int refused = 0;
+    for (int i = 0; i < 2000; ++i) {
+      const int part = static_cast<int>(random.below(3));
+      const Piece flood =
+          brickPiece(static_cast<int>(random.below(3)), static_cast<int>(random.below(60)),
+                     static_cast<int>(random.below(50)), 1 + static_cast<int>(random.below(200)), part, 3);
+      if (store.apply(flood) == Applied::kRejected) ++refused;
+      ASSERT_LE(store.numBytes(), limits.max_bytes);
+      for (int r = 0; r < 3; ++r) ASSERT_LE(store.numBytesOf(world::RobotId{r}), limits.max_bytes_per_robot);
+      if (said < modest.size() && random.below(50) == 0) {
+        ASSERT_EQ(store.apply(modest[said++]), Applied::kNew);
+      }
+    }
+    EXPECT_GT(refused, 500);
+    while (said < modest.size()) ASSERT_EQ(store.apply(modest[said++]), Applied::kNew);
+    std::vector<Piece> kept;
+    store.visitOf(world::RobotId{3}, [&](const Piece& piece) { kept.push_back(piece); });
+    EXPECT_EQ(kept, modest);
+  }
+}
+
 // The law of DESIGN §2.1: order, duplication and loss of what is repeated later cannot matter.
 TEST(BeliefStoreTest, AnyOrderAndDuplicationGiveTheSameState) {
   Random random(20261122);

@@ -42,6 +42,7 @@ struct Scene {
   comms::LinkModel link = {};
   int64_t budget = 3000;                                  // of everybody
   double apart_m = 0;                                     // robot k is at (k + 1) times this
+  mapping::StoreLimits limits = {};                       // of what nodes hold
   std::function<int(const std::string&)> joins_at = {};   // second in which a node starts
   std::function<int(const std::string&)> leaves_at = {};  // and is no more
   std::function<void(int, comms::MemoryNetwork&)> happen = {};
@@ -59,7 +60,7 @@ class Party {
         budget_(scene.budget),
         bus_(network.connect()),
         link_(fusion_node::emulated(*bus_, scene.link, {name, kMission, 1, 0})),
-        state_(kMission, {}),
+        state_(kMission, {}, 1.0, scene.limits),
         sender_(link_ ? static_cast<comms::Bus&>(*link_) : *bus_, nullptr, senderOptions(scene.budget)),
         repair_(repairOptions(), state_, sender_) {}
 
@@ -112,11 +113,14 @@ class Party {
   void listen(bool attentive) {
     comms::Bus& ears = link_ ? static_cast<comms::Bus&>(*link_) : *bus_;
     ears.receive(0, [&](const comms::Packet& packet) {
-      if (!attentive) return;
-      state_.hear(packet, sender_.stats());
-      repair_.hear(packet, now_us_);
+      if (attentive) takeIn(packet);
     });
     if (!attentive) now_us_ += kSecondUs;
+  }
+
+  void takeIn(const comms::Packet& packet) {
+    state_.hear(packet, sender_.stats());
+    repair_.hear(packet, now_us_);
   }
 
   void hear(const comms::Packet& packet) { repair_.hear(packet, now_us_); }
@@ -475,6 +479,67 @@ TEST(RepairTest, AFloodOfRequestsCostsNoBudgetAndNoNewContent) {
   for (const auto& party : meeting.parties()) {
     EXPECT_LE(party->sender().worstWindow().bytes, 3000);
     EXPECT_GT(party->stats().rejected.at("too many requests"), 0u);
+  }
+}
+
+// Somebody tells ever more of a world that there is not, and that there is more still. It takes no memory
+// beyond its own, nobody asks for what there is no room for, and what the others say arrives as ever.
+TEST(RepairTest, AFloodOfMapTakesNobodysRoom) {
+  Scene scene;
+  scene.robots = 4;
+  scene.budget = 0;
+  const Outcome undisturbed = Meeting(scene).run(100);
+  scene.limits = {.max_robots = 8, .max_bytes = 4'000'000, .max_bytes_per_robot = 500'000};
+  Meeting meeting(scene);
+  const world::RobotId evil{9};
+  const std::string node = world::name(evil);
+  int brick = 0;
+  const auto flood = [&](int second) {
+    std::vector<comms::Packet> packets;
+    for (int i = 0; i < 200; ++i, ++brick) {
+      mapping::BrickPart cells;
+      for (int x = 0; x < 16; ++x) cells.cells.push_back({{16 * brick + x, 0, 0}, world::TopicId{x}, {x}});
+      packets.push_back(
+          {comms::channelName(node, "BRICK"),
+           wire::encode({{evil, mapping::PieceKind::kBrick, {brick, 0, 0}}, {0, 1}, 0, 1, cells}, kMission,
+                        {second * kSecondUs})});
+    }
+    wire::Heartbeat more;
+    more.time = {second * kSecondUs};
+    more.mission = kMission;
+    more.own_digest = 1;  // which nobody will ever hold
+    packets.push_back({comms::channelName(node, "HEARTBEAT"), wire::encode(more)});
+    for (auto& party : meeting.parties())
+      for (const comms::Packet& packet : packets) party->takeIn(packet);
+  };
+  int second = 0;
+  for (; second <= undisturbed.settled_s + 5; ++second) {
+    flood(second);
+    meeting.turn(second);
+  }
+  const auto requests = [&] {
+    uint64_t bytes = 0;
+    for (const auto& party : meeting.parties())
+      bytes += party->stats().of(comms::TrafficClass::kRequests).bytes;
+    return bytes;
+  };
+  const uint64_t before = requests();
+  for (; second < 60; ++second) {
+    flood(second);
+    meeting.turn(second);
+  }
+  EXPECT_EQ(requests(), before);
+  for (const auto& party : meeting.parties()) {
+    const mapping::BeliefStore& held = party->state().beliefs();
+    EXPECT_LE(held.numBytesOf(evil), scene.limits.max_bytes_per_robot);
+    EXPECT_GT(held.numBytesOf(evil), scene.limits.max_bytes_per_robot - 2000);
+    EXPECT_TRUE(held.isFull(evil));
+    EXPECT_GT(party->stats().rejected.at("over limit"), 1000u);
+    for (const auto& robot : meeting.parties()) {
+      if (!robot->isRobot() || !party->fuses()) continue;
+      const world::RobotId id = *world::parseRobotId(robot->name());
+      EXPECT_EQ(held.digestOf(id), robot->said().digestOf(id)) << party->name() << " of " << robot->name();
+    }
   }
 }
 
