@@ -337,6 +337,11 @@ void Agent::save() {
     c.said.push_back({piece, sender_.queue().isWaiting(queueKey(piece.key, piece.part))});
   });
   writeCheckpoint(checkpointPath(options_.checkpoint_dir, options_.explorer.robot), c);
+  // Not before there is a checkpoint, and nothing has been said yet: who is killed in between has not begun.
+  if (!epoch_is_kept_) {
+    mapping::writeFileAtomically(epochPath(options_.checkpoint_dir, c.robot), std::to_string(c.epoch) + "\n");
+  }
+  epoch_is_kept_ = true;
 }
 
 // Sends what the budget allows and listens, until mission time `to_us`.

@@ -92,6 +92,7 @@ class Agent {
   double total_ms_ = 0;
   fusion_node::SilenceAlarm silence_;
   bool warned_of_twin_ = false;
+  bool epoch_is_kept_ = false;
   size_t warned_of_missions_ = 0;
 };
 

@@ -80,6 +80,10 @@ Checkpoint read(wire::ByteReader& in, const std::string& path) {
 
 }  // namespace
 
+std::string epochPath(const std::string& folder, world::RobotId robot) {
+  return folder + "/" + world::name(robot) + ".epoch";
+}
+
 std::string checkpointPath(const std::string& folder, world::RobotId robot) {
   return folder + "/" + world::name(robot) + ".checkpoint";
 }

@@ -35,6 +35,9 @@ struct Checkpoint {
 /// The file of a robot's checkpoint in a folder.
 std::string checkpointPath(const std::string& folder, world::RobotId robot);
 
+/// The file that says in which epoch a robot has spoken, so that one that lost its checkpoint begins another.
+std::string epochPath(const std::string& folder, world::RobotId robot);
+
 /// Writes it whole or not at all.
 /// @throws std::runtime_error naming the file that cannot be written.
 void writeCheckpoint(const std::string& path, const Checkpoint& checkpoint);

@@ -117,7 +117,7 @@ void resume(Flags& flags, world::RobotId id) {
   robot_agent::AgentOptions& options = flags.agent;
   options.checkpoint_dir = flags.checkpoint;
   const std::string path = robot_agent::checkpointPath(flags.checkpoint, id);
-  const std::string epoch_path = flags.checkpoint + "/" + name(id) + ".epoch";
+  const std::string epoch_path = robot_agent::epochPath(flags.checkpoint, id);
   std::optional<robot_agent::Checkpoint> checkpoint;
   try {
     checkpoint = robot_agent::readCheckpoint(path);
@@ -131,6 +131,7 @@ void resume(Flags& flags, world::RobotId id) {
   }
   if (checkpoint) {
     options.explorer.epoch = checkpoint->epoch;
+    mapping::writeFileAtomically(epoch_path, std::to_string(checkpoint->epoch) + "\n");
     const auto now_us = std::chrono::duration_cast<std::chrono::microseconds>(
                             std::chrono::system_clock::now().time_since_epoch())
                             .count();
@@ -145,7 +146,6 @@ void resume(Flags& flags, world::RobotId id) {
     options.explorer.epoch = std::max(options.explorer.epoch, before + 1);
     spdlog::warn("the checkpoint of epoch {} is lost: epoch {} begins", before, options.explorer.epoch);
   }
-  mapping::writeFileAtomically(epoch_path, std::to_string(options.explorer.epoch) + "\n");
 }
 
 int run(Flags flags) {

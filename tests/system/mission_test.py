@@ -9,6 +9,7 @@ import csv
 import glob
 import json
 import os
+import random
 import re
 import shutil
 import signal
@@ -480,12 +481,12 @@ class ByHand(unittest.TestCase):
         self.started.append(process)
         return process
 
-    def wait_for(self, what, limit=120):
+    def wait_for(self, what, limit=120, step=0.2):
         deadline = time.monotonic() + limit
         while time.monotonic() < deadline:
             if what():
                 return
-            time.sleep(0.2)
+            time.sleep(step)
         self.fail("waited in vain: " + "".join(read(p).decode() for p in glob.glob(self.top + "/log*")))
 
     def test_robots_that_fuse_and_the_operator_hold_one_map(self):
@@ -652,6 +653,69 @@ class ByHand(unittest.TestCase):
         for question, said in before.items():
             self.assertEqual(ask(question, "--node", state), said, question)
         self.assertEqual(ask("diff", "0", "1000", "--node", state), difference)
+
+    def test_a_robot_that_is_killed_again_and_again_loses_nothing_that_it_told(self):
+        def fly(folder, port, kills):
+            state, moment = os.path.join(folder, "state"), random.Random(20)
+            url = ["--lcm-url", f"udpm://239.255.76.67:{port}?ttl=0", "--rate", "max", "--mission", "78"]
+
+            def robot(name):
+                return self.start("robot_agent", "--robot", name, "--robots", "2", "--source", "reef:tuning", "--observations",
+                                  "30", *url, "--checkpoint", os.path.join(folder, "checkpoints"), "--linger")
+
+            def await_work(process, seconds):  # of CPU, so that moments are alike on a busy machine
+                until, worked = time.monotonic() + 3, 0.0
+                while worked < seconds and time.monotonic() < until:
+                    time.sleep(0.01)
+                    fields = read(f"/proc/{process.pid}/stat").decode().rpartition(")")[2].split()
+                    worked = (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+            def status():
+                done = subprocess.run([CONSOLE, "status", "--node", state, "--json"], capture_output=True, text=True, timeout=60)
+                return json.loads(done.stdout) if done.returncode == 0 else {"nodes": []}
+
+            def is_over():
+                robots = [n for n in status()["nodes"] if n["phase"] == "landed" and n["heard_whole"]]
+                return len(robots) == 2
+
+            node, other, victim = self.start("fusion_node", *url, "--state", state), robot("R01"), robot("R00")
+            checkpoint, started = os.path.join(folder, "checkpoints", "R00.checkpoint"), time.time()
+            plan, late = ["start", "checkpoint"] * 5, ["checkpoint", "landed"] * 3
+            moment.shuffle(plan)
+            moment.shuffle(late)
+            plan = ["start"] * 8 + plan + late
+            for _ in range(kills):
+                at, log = plan.pop(0), os.path.join(self.top, f"log{len(self.started) - 1}")
+                if at == "start":
+                    await_work(victim, 0.3 * moment.random())
+                elif at == "checkpoint":  # of this life
+                    self.wait_for(lambda: os.path.exists(checkpoint) and os.path.getmtime(checkpoint) > started, step=0.01)
+                else:
+                    self.wait_for(lambda: b"landed after 30 observations" in read(log), step=0.01)
+                time.sleep(0.1 * moment.random())
+                self.assertIsNone(victim.poll(), "it ended by itself")
+                victim.kill()
+                victim.wait()
+                started = time.time()
+                victim = robot("R00")
+            self.wait_for(is_over)
+            said = status()
+            for process in (node, other, victim):
+                process.send_signal(signal.SIGINT)
+                self.assertEqual(process.wait(timeout=60), 0)
+            return said
+
+        calm = fly(os.path.join(self.top, "calm"), 7815, 0)
+        before = len(self.started)
+        shot = fly(os.path.join(self.top, "shot"), 7816, 24)
+        self.assertEqual(shot["digest"], calm["digest"])
+        self.assertEqual(shot["mixed"], [])
+        self.assertEqual([(n["name"], n["conflicts"]) for n in shot["nodes"]], [(n["name"], 0) for n in calm["nodes"]])
+        logs = [read(os.path.join(self.top, f"log{i}")).decode() for i in range(before, len(self.started))]
+        lives = [re.findall(r"goes on from a checkpoint after (\d+) observations", log) for log in logs]
+        self.assertGreater(sum(bool(life) for life in lives), 8)
+        self.assertTrue({"25", "30"} & {life[0] for life in lives if life}, lives)
+        self.assertFalse([log for log in logs if re.search(r"epoch \d+ begins", log)], "it began anew")
 
     def test_another_mission_on_the_url_is_refused(self):
         url = "udpm://239.255.76.67:7813?ttl=0"
