@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+package shoal.spy;
+
+import java.util.ArrayList;
+import java.util.HashMap;
+import java.util.List;
+
+/** Which cells a message speaks of, and what each has around it that came before: docs/wire.md. */
+final class CellField {
+  /** Columns in whose cells a cell looks for its like, nearest first: dx, dy, weight. */
+  private static final int[][] COLUMNS = {
+      {-1, 0, 16}, {0, -1, 16}, {-1, -1, 9}, {-1, 1, 9}, {1, -1, 9}, {-2, 0, 5}, {0, -2, 5}, {-2, -1, 4}, {-1, -2, 4},
+      {-2, 1, 4},  {-1, 2, 4},  {1, -2, 4},  {2, -1, 4}, {-2, -2, 3}, {-2, 2, 3}, {2, -2, 3}, {-3, 0, 2}, {0, -3, 2}};
+  static final int PLACES = COLUMNS.length + 1;
+
+  final List<int[]> cells = new ArrayList<>();  // x, y, z
+  final List<int[]> near = new ArrayList<>();   // PLACES indices into cells, -1 where there is none
+  private final HashMap<Long, List<int[]>> columns = new HashMap<>();  // (x, y) -> {z, place}, ascending
+  private final BitReader.Models lowest = new BitReader.Models(), highest = new BitReader.Models();
+  private final int[][] alike = new int[64][];
+  private final BitMixer.Contexts heights = new BitMixer.Contexts(), diagonals = new BitMixer.Contexts();
+  private final BitMixer mixer = new BitMixer(3);
+
+  CellField() {
+    int[] begin = {2000, 26000, 50000, 63500};
+    for (int c = 0; c < alike.length; ++c) alike[c] = new int[] {begin[Integer.bitCount(c & 7)], 3};
+  }
+
+  static int weight(int place) { return place < COLUMNS.length ? COLUMNS[place][2] : 16; }
+
+  private static long key(int x, int y) { return (long) x << 32 | y & 0xFFFFFFFFL; }
+
+  /** {height, place} of the cell of a column nearest to z, the lower of two; null when it is empty. */
+  private int[] nearest(int x, int y, int z) {
+    List<int[]> column = columns.get(key(x, y));
+    if (column == null) return null;
+    int[] best = null;
+    for (int i = column.size() - 1; i >= 0; --i) {
+      int[] cell = column.get(i);
+      if (best != null && Math.abs(cell[0] - z) > Math.abs(best[0] - z)) break;
+      best = cell;
+    }
+    return best;
+  }
+
+  private int step(int x, int y, int z) {
+    int[] found = nearest(x, y, z);
+    return found == null ? 0 : Math.min(Math.max(found[0] - z, -3), 3) + 4;
+  }
+
+  private void add(int x, int y, int z) {
+    int[] around = new int[PLACES];
+    for (int i = 0; i < COLUMNS.length; ++i) {
+      int[] found = nearest(x + COLUMNS[i][0], y + COLUMNS[i][1], z);
+      around[i] = found == null ? -1 : found[1];
+    }
+    List<int[]> own = columns.computeIfAbsent(key(x, y), k -> new ArrayList<>());
+    int[] top = own.isEmpty() ? null : own.get(own.size() - 1);
+    around[COLUMNS.length] = top != null && top[0] == z - 1 ? top[1] : -1;
+    own.add(new int[] {z, cells.size()});
+    cells.add(new int[] {x, y, z});
+    near.add(around);
+  }
+
+  /** Adds the cells of the brick with these indices. */
+  void readBrick(BitReader bits, int brickX, int brickY, int brickZ) throws BadMessage {
+    int low = bits.tree(lowest, 4), high = bits.tree(highest, 4);
+    int x0 = 16 * brickX, y0 = 16 * brickY, z0 = 16 * brickZ;
+    for (int x = x0; x < x0 + 16; ++x) {
+      for (int y = y0; y < y0 + 16; ++y) {
+        int began = 0;
+        int alone = step(x, y - 1, z0 + low) == 0 && step(x - 1, y, z0 + low) == 0 ? 1 : 0;
+        for (int z = z0 + low; z <= z0 + high; ++z) {
+          int west = step(x - 1, y, z), south = step(x, y - 1, z);
+          int southwest = step(x - 1, y - 1, z), northwest = step(x - 1, y + 1, z);
+          int same = (west == 4 ? 1 : 0) | (south == 4 ? 2 : 0) | (southwest == 4 ? 4 : 0) | (west > 4 ? 8 : 0) |
+                     (south > 4 ? 16 : 0) | began << 5;
+          int[][] contexts = {alike[same], heights.get((west * 8 + south) * 2 + began),
+                              diagonals.get(((southwest * 8 + northwest) * 8 + west) * 2 + began)};
+          if (mixer.bit(bits, contexts, alone) == 1) {
+            add(x, y, z);
+            began = 1;
+          }
+        }
+      }
+    }
+  }
+}
