@@ -13,8 +13,10 @@
 #include <chrono>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
 
 #include <spdlog/fmt/fmt.h>
 
@@ -38,11 +40,11 @@ constexpr auto kListen = std::chrono::milliseconds(1300);  // a heartbeat comes 
 constexpr double kGigabyte = 1e9;
 constexpr const char* kRoute = "sudo ip route add 224.0.0.0/4 dev lo";
 
-// The interface with this address.
+// The interface with this address; "" when there is none.
 std::string interfaceOf(const in_addr& address) {
   ifaddrs* all = nullptr;
-  if (getifaddrs(&all) != 0) return "?";
-  std::string name = "?";
+  if (getifaddrs(&all) != 0) return "";
+  std::string name;
   for (const ifaddrs* i = all; i != nullptr; i = i->ifa_next) {
     if (i->ifa_addr == nullptr || i->ifa_addr->sa_family != AF_INET) continue;
     if (reinterpret_cast<const sockaddr_in*>(i->ifa_addr)->sin_addr.s_addr == address.s_addr)
@@ -50,6 +52,26 @@ std::string interfaceOf(const in_addr& address) {
   }
   freeifaddrs(all);
   return name;
+}
+
+// The interface of the narrowest IPv4 route to an address, from the kernel's table; "" when there is none.
+// For interfaces that have no address of their own.
+std::string routedBy(const in_addr& address) {
+  std::ifstream table("/proc/net/route");
+  std::string line, best;
+  std::getline(table, line);  // the header
+  uint32_t narrowest = 0;
+  while (std::getline(table, line)) {
+    std::istringstream row(line);
+    std::string name, skipped;
+    uint32_t destination = 0, mask = 0;
+    row >> name >> std::hex >> destination >> skipped >> skipped >> skipped >> skipped >> skipped >> mask;
+    if (!row || (address.s_addr & mask) != destination) continue;
+    if (!best.empty() && ntohl(mask) <= ntohl(narrowest)) continue;
+    best = name;
+    narrowest = mask;
+  }
+  return best;
 }
 
 Finding routeOf(const comms::LcmUrl& url) {
@@ -64,8 +86,12 @@ Finding routeOf(const comms::LcmUrl& url) {
       ::getsockname(fd, reinterpret_cast<sockaddr*>(&own), &size) != 0) {
     finding.says = fmt::format("no way to {}: {}", url.group, std::strerror(errno));
   } else {
-    const std::string interface = interfaceOf(own.sin_addr);
-    finding = {"multicast route", State::kGood, fmt::format("{} goes by {}", url.group, interface), ""};
+    std::string interface = interfaceOf(own.sin_addr);
+    if (interface.empty()) interface = routedBy(group.sin_addr);
+    finding = {"multicast route", State::kGood,
+               interface.empty() ? fmt::format("there is a way to {}", url.group)
+                                 : fmt::format("{} goes by {}", url.group, interface),
+               ""};
     if (url.ttl > 0 && interface == "lo") {
       finding.state = State::kWarning;
       finding.says += ", which leads to no other host";

@@ -36,7 +36,12 @@ public class SpyMapTest {
     Random random = new Random(8);
     for (int file = 2; file < arguments.length; ++file) {
       byte[] golden = Files.readAllBytes(Path.of(arguments[file]));
-      Piece.read(golden);
+      for (Piece piece : Piece.read(golden)) {
+        if (piece.kind != Piece.Kind.TOPIC) continue;
+        System.out.println("golden " + piece.robot + " " + piece.epoch + " " + piece.observation + " " + piece.part + " " +
+                           piece.numParts + " " + piece.index + " " + piece.weight + " " +
+                           java.util.Arrays.toString(piece.groups) + " " + piece.words);
+      }
       for (int repeat = 0; repeat < 1500; ++repeat) {
         byte[] damaged = damage(golden, random, repeat);
         try {

@@ -20,6 +20,7 @@ import javax.swing.JInternalFrame;
 import javax.swing.JPanel;
 import javax.swing.JScrollPane;
 import javax.swing.JSplitPane;
+import javax.swing.SwingUtilities;
 import javax.swing.Timer;
 import javax.swing.WindowConstants;
 import lcm.lcm.LCM;
@@ -83,7 +84,9 @@ public final class MapAndTopics implements SpyPlugin {
     frame.setDefaultCloseOperation(WindowConstants.DISPOSE_ON_CLOSE);
     frame.setLayout(new BorderLayout());
     frame.add(window, BorderLayout.CENTER);
-    frame.setBounds(10, 10, Math.max(400, Math.min(1100, pane.getWidth() - 20)), Math.max(300, Math.min(620, pane.getHeight() - 20)));
+    java.awt.Window around = SwingUtilities.getWindowAncestor(pane);  // begins small
+    if (around != null && around.getWidth() < 1120) around.setSize(1120, 700);
+    frame.setBounds(0, 0, 1090, 620);
     final Timer timer = new Timer(1000, e -> window.look());
     frame.addInternalFrameListener(new javax.swing.event.InternalFrameAdapter() {
       @Override
@@ -125,8 +128,7 @@ public final class MapAndTopics implements SpyPlugin {
       };
       setLeftComponent(left);
       setRightComponent(new JScrollPane(right));
-      setResizeWeight(.5);
-      setDividerLocation(360);
+      setDividerLocation(500);
       look();
     }
 
