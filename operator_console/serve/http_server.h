@@ -27,7 +27,7 @@ struct HttpResponse {
 struct HttpOptions {
   std::string host = "127.0.0.1";  ///< an IPv4 address of this machine
   uint16_t port = 8080;            ///< 0: any free one
-  unsigned max_connections = 1000;
+  unsigned max_connections = 4000;
   unsigned max_streams = 64;
   unsigned idle_s = 10;                ///< a connection that neither sends nor takes anything is closed
   size_t max_body = size_t{64} << 10;  ///< of a request, bytes

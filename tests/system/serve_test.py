@@ -12,6 +12,7 @@ import io
 import json
 import os
 import random
+import resource
 import shutil
 import signal
 import socket
@@ -524,7 +525,10 @@ class Serve(unittest.TestCase):
         self.assertEqual(self.server.ask("/api/labels")[0].status, 200)
 
     def test_slow_and_vanishing_clients_cost_a_connection_and_nothing_else(self):
-        idle = [socket.create_connection(("127.0.0.1", self.server.port), timeout=5) for _ in range(400)]
+        files, most = resource.getrlimit(resource.RLIMIT_NOFILE)
+        resource.setrlimit(resource.RLIMIT_NOFILE, (min(most, 8192), most))
+        self.addCleanup(resource.setrlimit, resource.RLIMIT_NOFILE, (files, most))
+        idle = [socket.create_connection(("127.0.0.1", self.server.port), timeout=5) for _ in range(3000)]
         for link in idle:
             link.sendall(b"GET /api/map HTTP/1.1\r\nHo")  # and never goes on
         streams = []
