@@ -41,7 +41,7 @@ void printRow(const Json& n) {
       fmt::format("{}/{}", n["observation"].get<int>() + 1, n["num_observations"].get<int>());
   const std::string told = !flies ? "-" : n["heard_whole"].get<bool>() ? "all" : "part";
   const std::string agreement = n["agreement"];
-  fmt::print("{:<9} {:<7} {:>8.1f} {:>7} {:>6} {:>6} {:>5} {:>6} {:>6} {:>4} {:<4} {}\n",
+  fmt::print("{:<8} {:<7} {:>7.1f} {:>7} {:>6} {:>6} {:>4} {:>6} {:>5} {:>3} {:<4} {}\n",
              n["name"].get<std::string>(), n["phase"].get<std::string>(), n["heard_s"].get<double>(),
              flies ? images : "-", n["topics"].get<int>(), n["cells"].get<int>(), budgetUsed(n),
              n["queue_bytes"].get<int>(), timeToClear(n), n["rejected"].get<int>(), told,
@@ -65,14 +65,14 @@ void print(const Json& a) {
                    ? alarming(", NOT THE ONE THIS NODE WAS GIVEN: " + (*library)["given"].get<std::string>())
                    : "");
   }
-  fmt::print("{:<9} {:<7} {:>8} {:>7} {:>6} {:>6} {:>5} {:>6} {:>6} {:>4} {:<4} {}\n", "node", "phase",
+  fmt::print("{:<8} {:<7} {:>7} {:>7} {:>6} {:>6} {:>4} {:>6} {:>5} {:>3} {:<4} {}\n", "node", "phase",
              "heard s", "images", "topics", "cells", "used", "queue", "clear", "bad", "told", "map");
   for (const Json& n : a["nodes"]) printRow(n);
   for (const Json& m : a["mixed"])
-    fmt::print("{:<9} {}: {}\n", m["node"].get<std::string>(), alarming(m["kind"].get<std::string>()),
+    fmt::print("{:<8} {}: {}\n", m["node"].get<std::string>(), alarming(m["kind"].get<std::string>()),
                m["says"].get<std::string>());
   for (const Json& s : a["strangers"]) {
-    fmt::print("{:<9} {} has {}: {} messages\n", s["name"].get<std::string>(), alarming("stranger"),
+    fmt::print("{:<8} {} has {}: {} messages\n", s["name"].get<std::string>(), alarming("stranger"),
                s["has"].get<std::string>(), s["messages"].get<uint64_t>());
   }
 }
