@@ -44,9 +44,10 @@ struct Range {
 std::optional<std::vector<Pair>> countInTable(std::span<const int> label, std::span<const int> truth) {
   // Places are worked out a block at a time, in vectors. Neighbours are mostly alike: tables in turn keep an
   // addition from waiting for the last one.
-  constexpr size_t kTables = 4, kBlock = 1024;
+  constexpr size_t kTables = 8, kBlock = 1024;
+  constexpr size_t kMostCounted = size_t{1} << 24;  // before counts are taken out: they never overflow
   Range labels, truths;
-  std::vector<int64_t> tables;  // place by place
+  std::vector<uint32_t> tables;  // place by place
   std::vector<Pair> pairs;
   const auto takeOut = [&] {
     for (size_t place = 0; place < tables.size() / kTables; ++place) {
@@ -73,7 +74,7 @@ std::optional<std::vector<Pair>> countInTable(std::span<const int> label, std::s
       }
       return label_bits >> labels.bits == 0 && truth_bits >> truths.bits == 0;
     };
-    if (done == 0 || !fillPlaces()) {
+    if (done % kMostCounted == 0 || !fillPlaces()) {
       takeOut();
       labels.growTo(l, done == 0);
       truths.growTo(t, done == 0);
@@ -81,7 +82,7 @@ std::optional<std::vector<Pair>> countInTable(std::span<const int> label, std::s
       tables.assign(kTables << (labels.bits + truths.bits), 0);
       fillPlaces();
     }
-    int64_t* const counts = tables.data();
+    uint32_t* const counts = tables.data();
     size_t n = 0;
     for (; n + kTables <= l.size(); n += kTables) {
       for (size_t table = 0; table < kTables; ++table) ++counts[places[n + table] * kTables + table];
