@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What lcm-spy's window draws, cell by cell and word by word, against shoal_reader.py; then damaged messages.
 
-Usage: spy_map_test.py SOURCE_DIR JARS OUT [LOG...]   JARS: a Java class path. Pictures are left in OUT.
+Usage: spy_map_test.py SOURCE_DIR JARS OUT WRITE_RECORDING [LOG...]   JARS: a Java class path. Pictures are left in OUT.
 """
 import glob
 import os
@@ -11,7 +11,7 @@ import subprocess
 import sys
 import tempfile
 
-SOURCE, JARS, OUT = sys.argv[1:4]
+SOURCE, JARS, OUT, WRITE_RECORDING = sys.argv[1:5]
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.join(SOURCE, "common", "wire", "python"))
 import shoal_reader  # noqa: E402
@@ -90,7 +90,8 @@ def main():
                         os.path.join(SOURCE, "tests", "wire", "SpyMapTest.java")], check=True)
         golden_log(os.path.join(work, "golden.lcmlog"))
         compare(os.path.join(work, "golden.lcmlog"), work, GOLDEN)
-        for log in sys.argv[4:]:
+        subprocess.run([WRITE_RECORDING, work], check=True, timeout=60)
+        for log in [os.path.join(work, "mission.lcmlog"), *sys.argv[5:]]:
             compare(log, work)
 
 
