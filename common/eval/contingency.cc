@@ -7,11 +7,15 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
+
+#include "shoal/eval/parallel.h"
 
 namespace shoal::eval {
 namespace {
 
-constexpr int kTableBits = 16;  // of a place in the table: 65,536 pairs
+constexpr int kTableBits = 16;                // of a place in the table: 65,536 pairs
+constexpr size_t kStretch = size_t{1} << 20;  // of cells, counted by one thread
 
 // A pair of ids with its number of cells.
 struct Pair {
@@ -45,7 +49,6 @@ std::optional<std::vector<Pair>> countInTable(std::span<const int> label, std::s
   // Places are worked out a block at a time, in vectors. Neighbours are mostly alike: tables in turn keep an
   // addition from waiting for the last one.
   constexpr size_t kTables = 8, kBlock = 1024;
-  constexpr size_t kMostCounted = size_t{1} << 24;  // before counts are taken out: they never overflow
   Range labels, truths;
   std::vector<uint32_t> tables;  // place by place
   std::vector<Pair> pairs;
@@ -74,7 +77,7 @@ std::optional<std::vector<Pair>> countInTable(std::span<const int> label, std::s
       }
       return label_bits >> labels.bits == 0 && truth_bits >> truths.bits == 0;
     };
-    if (done % kMostCounted == 0 || !fillPlaces()) {
+    if (done == 0 || !fillPlaces()) {
       takeOut();
       labels.growTo(l, done == 0);
       truths.growTo(t, done == 0);
@@ -97,6 +100,20 @@ std::vector<Pair> oneByOne(std::span<const int> label, std::span<const int> trut
   std::vector<Pair> pairs(label.size());
   for (size_t n = 0; n < label.size(); ++n) pairs[n] = {label[n], truth[n], 1};
   return pairs;
+}
+
+// A stretch of the cells after the other, on all cores.
+std::vector<Pair> countAll(std::span<const int> label, std::span<const int> truth) {
+  std::vector<std::vector<Pair>> counted((label.size() + kStretch - 1) / kStretch);
+  forEachInParallel(static_cast<int>(counted.size()), [&](int i) {
+    const size_t from = static_cast<size_t>(i) * kStretch, cells = std::min(kStretch, label.size() - from);
+    const auto l = label.subspan(from, cells), t = truth.subspan(from, cells);
+    std::optional<std::vector<Pair>> pairs = countInTable(l, t);
+    counted[static_cast<size_t>(i)] = pairs ? *std::move(pairs) : oneByOne(l, t);
+  });
+  std::vector<Pair> all;
+  for (const std::vector<Pair>& pairs : counted) all.insert(all.end(), pairs.begin(), pairs.end());
+  return all;
 }
 
 std::vector<Pair> merged(std::vector<Pair> pairs) {
@@ -130,8 +147,7 @@ Contingency contingency(std::span<const int> label, std::span<const int> truth) 
     throw std::invalid_argument("two labellings of the same cells must be equally long, got " +
                                 std::to_string(label.size()) + " and " + std::to_string(truth.size()));
   }
-  std::optional<std::vector<Pair>> counted = countInTable(label, truth);
-  const std::vector<Pair> pairs = merged(counted ? *std::move(counted) : oneByOne(label, truth));
+  const std::vector<Pair> pairs = merged(countAll(label, truth));
 
   Contingency result;
   result.num_cells = static_cast<int64_t>(label.size());
