@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "shoal/random.h"
+#include "shoal/wire/context_table.h"
 #include "shoal/wire/range_coder.h"
 
 namespace shoal::wire {
@@ -52,6 +53,27 @@ TEST(BitMixerTest, LearnsWhomToBelieve) {
     const std::array<ContextBit*, 2> both = {&knowing_again[hint], &noise_again[other]};
     ASSERT_EQ(again.code(decoder, both, 0, 0), bits[static_cast<size_t>(i)]);
   }
+}
+
+// A context that is left alone until the numbers of tables have come round is new all the same, whichever way
+// they come round.
+TEST(ContextTableTest, IsNewHoweverLongItsContextsWereLeftAlone) {
+  for (size_t n = 0; n < 1000; ++n) {
+    ContextTable table(1000);
+    for (const size_t i : {n % 255, 300 + n % 256, 600 + n % 257, 900 + n % 3}) {
+      ASSERT_EQ(table[i].one, ContextBit{}.one) << n;
+      ASSERT_EQ(table[i].seen, 0) << n;
+      table[i].update(1);
+      ASSERT_EQ(table[i].seen, 1) << n;
+    }
+  }
+}
+
+TEST(ContextTableTest, TwoAtATimeDoNotMeet) {
+  ContextTable one(50), other(50);
+  one[7].update(1);
+  EXPECT_EQ(one[7].seen, 1);
+  EXPECT_EQ(other[7].seen, 0);
 }
 
 }  // namespace
