@@ -2,21 +2,21 @@
 #include "shoal/mapping/node_answer.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "shoal/mapping/stacked_topics.h"
+#include "shoal/rounded.h"
 
 namespace shoal::mapping {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-// To milliseconds. Mission time has microseconds, and differences of doubles do not hold them exactly:
-// without the first step half a millisecond would go up or down by where the times came from.
-double seconds(double value) { return std::floor((std::round(value * 1e6) + 500) / 1e3) / 1e3; }
+// To milliseconds. A heartbeat's time is rounded before anything is counted from it, as every answer and file
+// tells it: a run's files and its recording give one answer.
+double milliseconds(double seconds) { return rounded(seconds, 1e3); }
 
 std::string unknownNode(const MissionView& view, const std::string& node) {
   std::string said = "nothing was heard of \"" + node + "\"; heard were";
@@ -39,7 +39,7 @@ Json topicsTold(const MissionView& view, const BeliefStore& beliefs, world::Robo
                     {"name", row == view.map.labels.end() ? "" : row->name},
                     {"cells", topic.cells},
                     {"weight", topic.weight},
-                    {"created_s", seconds(topic.created.seconds())}});
+                    {"created_s", milliseconds(topic.created.seconds())}});
   }
   return told;
 }
@@ -49,8 +49,9 @@ Json topicsTold(const MissionView& view, const BeliefStore& beliefs, world::Robo
 Json nodeAnswer(const MissionView& view, const BeliefStore& beliefs, const std::string& node) {
   const auto status = std::ranges::find(view.nodes, node, &NodeStatus::name);
   if (status == view.nodes.end()) return {{"error", unknownNode(view, node)}};
-  double now_s = status->heard_s;
-  for (const NodeStatus& n : view.nodes) now_s = std::max(now_s, n.heard_s);
+  const double heard_s = milliseconds(status->heard_s);
+  double now_s = heard_s;
+  for (const NodeStatus& n : view.nodes) now_s = std::max(now_s, milliseconds(n.heard_s));
   const auto robot = world::parseRobotId(node);
   int64_t cells = 0, shown = 0;
   std::optional<world::Timestamp> told_until;
@@ -62,12 +63,12 @@ Json nodeAnswer(const MissionView& view, const BeliefStore& beliefs, const std::
   });
   for (const GlobalCell& c : view.map.cells) shown += robot && c.robot == *robot ? 1 : 0;
   return {{"node", toJson(*status)},
-          {"now_s", seconds(now_s)},
-          {"silent_s", seconds(seconds(now_s) - seconds(status->heard_s))},
+          {"now_s", now_s},
+          {"silent_s", milliseconds(now_s - heard_s)},
           {"cells_told", cells},
           {"cells_shown", shown},
-          {"told_until_s", told_until ? Json(seconds(told_until->seconds())) : Json()},
-          {"behind_s", told_until ? Json(seconds(status->heard_s - told_until->seconds())) : Json()},
+          {"told_until_s", told_until ? Json(milliseconds(told_until->seconds())) : Json()},
+          {"behind_s", told_until ? Json(milliseconds(heard_s - told_until->seconds())) : Json()},
           {"topics", robot ? topicsTold(view, beliefs, *robot) : Json::array()}};
 }
 

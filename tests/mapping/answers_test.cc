@@ -228,6 +228,16 @@ TEST_F(AnswersTest, NodeTellsWhatItToldAndHowOldThatIs) {
             std::string::npos);
 }
 
+TEST_F(AnswersTest, NodeIsAnsweredAlikeFromARecordingsTimesAndFromAFilesMilliseconds) {
+  for (int64_t us = 18'572'000; us < 18'576'000; ++us) {
+    view_.nodes[0].heard_s = world::Timestamp{us}.seconds();
+    view_.nodes[1].heard_s = world::Timestamp{us + us % 1777}.seconds();
+    const Json recorded = ask({{"query", "node"}, {"node", "R00"}});
+    for (NodeStatus& node : view_.nodes) node = nodeFromJson(toJson(node));
+    ASSERT_EQ(ask({{"query", "node"}, {"node", "R00"}}), recorded) << us;
+  }
+}
+
 TEST_F(AnswersTest, WhatIsNoQuestionIsAnErrorAndHurtsNobody) {
   for (const char* text :
        {"{}", R"({"query": "what"})", R"({"query": 7})", R"({"query": "at"})",
