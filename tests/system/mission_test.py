@@ -262,6 +262,28 @@ class Mission(unittest.TestCase):
         told = ask("evaluate", "--run", self.a, "--world", "reef:tuning", "--matcher", "shoal")
         self.assertAlmostEqual(scored["ami"], told["matchers"]["shoal"]["ami"], places=5)
 
+    def test_the_map_is_scored_by_the_cells_that_a_person_named(self):
+        path = os.path.join(self.top, "named.csv")
+        draw = ["score", "--run", self.a, "--draw", "60", "--out", path]
+        run(CONSOLE, *draw)
+        self.assertIn("is there already", run(CONSOLE, *draw, expect=2).stderr)
+        with open(path, encoding="utf-8", newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(len(rows), 60)
+        label_at = {(c["x_m"], c["y_m"], c["z_m"]): c["label"] for c in csv.DictReader(
+            read(os.path.join(self.a, "global_map.csv")).decode().splitlines())}
+        for row in rows:  # somebody who sees exactly what the map shows
+            row["name"] = "kind, " + label_at[row["x_m"], row["y_m"], row["z_m"]]
+        with open(path, "w", encoding="utf-8", newline="") as file:
+            table = csv.DictWriter(file, rows[0].keys())
+            table.writeheader()
+            table.writerows(rows)
+        score = ask("score", "--run", self.a, "--named", path)
+        check_schema("score_named", score)
+        self.assertEqual((score["named"], score["ami"], score["high"]), (60, 1, 1))
+        self.assertLess(score["low"], 1)
+        self.assertEqual(score, ask("score", "--log", os.path.join(self.a, "mission.lcmlog"), "--named", path))
+
     def test_the_summary_page_says_what_happened_and_needs_nothing_else(self):
         page = read(os.path.join(self.a, "summary.html")).decode()
         for row in ask("labels", "--run", self.a)["labels"]:
