@@ -67,6 +67,10 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", std::string("fusion_node ") + version() + " (" + commit() + ")");
   app.set_config("--config", "", "mission.toml: any of these flags");
   app.allow_config_extras(CLI::config_extras_mode::ignore_all);  // the file serves other programs too
+  app.footer(
+      "  fusion_node --node OPERATOR --mission bay --state state --out out\n"
+      "  fusion_node --node BOAT --lcm-url 'udpm://239.255.76.67:7667?ttl=1' --budget 500 --mission bay "
+      "--state state");
   app.add_option("--node", options.name, "name of this node, capitals and digits")->capture_default_str();
   app.add_option("--lcm-url", link.url, "multicast group of the link")
       ->envname("SHOAL_LCM_URL")

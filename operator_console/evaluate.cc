@@ -171,6 +171,9 @@ void addEvaluateCommand(CLI::App& app, Action& chosen) {
   command->add_flag("--explain", flags->explain,
                     "why: the ceiling of any matcher, purity by robot, what each label holds");
   command->add_flag("--json", flags->json, "answer in JSON");
+  command->footer(
+      "  operator_console evaluate --run runs/a --world reef:varied\n"
+      "  operator_console evaluate --run runs/a --world bay --matcher clear --sigma 0.75 --explain");
   command->callback([flags, &chosen] {
     chosen = [flags] {
       evaluate(*flags);

@@ -96,6 +96,9 @@ void addLaunchCommand(CLI::App& app, Action& chosen) {
       ->capture_default_str();
   command->add_option("--kill-plan", o.kill_plan,
                       "robots that crash and begin anew: lines `t_s ROBOT kill|restart`");
+  command->footer(
+      "  operator_console launch --world reef:varied --robots 12 --observations 60 --out runs/a\n"
+      "  operator_console launch --world bay --link acoustic --budget 200 --record --out runs/b");
   command->callback([&app, &chosen, flags] {
     chosen = [&app, flags] {
       LaunchOptions options = flags->launch;

@@ -55,6 +55,9 @@ int save(const Keeping& keeping) {
 void addLibraryCommand(CLI::App& app, Action& chosen) {
   CLI::App* command = app.add_subcommand("library", "names that the next mission begins with");
   command->require_subcommand(1);
+  command->footer(
+      "  operator_console library save --run runs/a --out reef.library\n"
+      "  operator_console library show reef.library");
   CLI::App* saving = command->add_subcommand("save", "writes the named labels and what they look like");
   const auto q = std::make_shared<Keeping>();
   saving->add_option("--out", q->file, "file to write")->required();

@@ -21,6 +21,9 @@ void addMatchCommand(CLI::App& app, Action& chosen) {
   command->add_flag("--distinct", options->distinct, "never merge a robot's own labels");
   command->add_flag("--timing", options->timing, "report the seconds that the matching took");
   command->add_flag("--json", options->json, "answer in JSON");
+  command->footer(
+      "  operator_console match graph.json --matcher clear --json\n"
+      "  operator_console match topics.json --distinct --timing");
   command->callback(
       [options, &chosen] { chosen = [options] { return runMatch(*options, std::cout, std::cerr); }; });
 }

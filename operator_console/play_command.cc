@@ -47,6 +47,9 @@ void addPlayCommand(CLI::App& app, Action& chosen) {
   command->add_option("--lcm-url", flags->lcm_url, "multicast group")
       ->envname("SHOAL_LCM_URL")
       ->capture_default_str();
+  command->footer(
+      "  operator_console play dives/robot0 --prefix CAM --rate 10\n"
+      "  robot_agent --robot R00 --robots 1 --source lcm:CAM --out out");
   command->callback([flags, &chosen] { chosen = [flags] { return playFolder(*flags); }; });
 }
 

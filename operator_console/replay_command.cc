@@ -45,6 +45,9 @@ void addReplayCommand(CLI::App& app, Action& chosen) {
       ->capture_default_str();
   command->add_option("--key", flags->key, "the team's key file, to check the seals");
   command->add_flag("--json", flags->json, "answer in JSON");
+  command->footer(
+      "Exits with 1, naming what the recording lacks, when the map cannot be made whole from it.\n\n"
+      "  operator_console replay runs/a/mission.lcmlog --out rebuilt");
   command->callback([&chosen, flags] { chosen = [flags] { return run(*flags); }; });
 }
 

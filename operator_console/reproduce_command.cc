@@ -40,6 +40,10 @@ void addReproduceCommand(CLI::App& app, Action& chosen) {
   command->add_option("--cell-size-m", o.cell_size_m, "edge of a cell, m (default: the world's)");
   command->add_option("--altitude-m", o.altitude_m, "camera height, m (default: native resolution)");
   command->add_flag("--json", flags->json, "print the summary as JSON");
+  command->footer(
+      "Stopped and started again with the same --out, it goes on where it was.\n\n"
+      "  operator_console reproduce --out runs/paper\n"
+      "  operator_console reproduce --world bay --profile best --observations 60 --repeats 3 --out runs/bay");
   command->callback([flags, exchange, &chosen] {
     chosen = [flags, exchange] {
       ReproduceOptions& asked = flags->options;

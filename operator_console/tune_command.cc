@@ -37,6 +37,9 @@ void addTuneCommand(CLI::App& app, Action& chosen) {
   command->add_option("--trials", o.trials, "settings in all")->capture_default_str();
   command->add_option("--seed", o.seed, "decides all randomness")->capture_default_str();
   command->add_flag("--json", flags->json, "answer in JSON");
+  command->footer(
+      "Stopped and started again with the same --out, it goes on where it was.\n\n"
+      "  operator_console tune --world reef:tuning --profile best --knobs evidence,beta --out runs/tune");
   command->callback([flags, &chosen] {
     chosen = [flags] {
       const nlohmann::ordered_json result = tune(flags->options);

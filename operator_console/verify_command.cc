@@ -20,6 +20,9 @@ void addVerifyCommand(CLI::App& app, Action& chosen) {
   command->add_option("log", flags->log, "a recording made by lcm-logger")->required();
   command->add_option("--key", flags->key, "the team's key file, to check the seals");
   command->add_flag("--json", flags->json, "answer in JSON");
+  command->footer(
+      "Exits with 1 when something was not in order.\n\n"
+      "  operator_console verify runs/a/mission.lcmlog");
   command->callback([&chosen, flags] {
     chosen = [flags] {
       const Verification result = verify(flags->log, flags->key);

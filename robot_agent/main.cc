@@ -207,6 +207,10 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", std::string("robot_agent ") + version() + " (" + commit() + ")");
   app.set_config("--config", "", "mission.toml: any of these flags");
   app.allow_config_extras(CLI::config_extras_mode::ignore_all);  // the file serves other programs too
+  app.footer(
+      "  robot_agent --robot R00 --robots 3 --source reef:varied --mission bay --out out\n"
+      "  robot_agent --robot R03 --robots 12 --source lcm:CAM --lcm-url 'udpm://239.255.76.67:7667?ttl=1' "
+      "--mission bay --out out");
   app.add_option("--robot", f.robot, "R00, R01, ...")->capture_default_str();
   app.add_option("--source", f.source,
                  "reef:sparse, reef:varied, reef:tuning, a world folder, a recording, or lcm:PREFIX (a real "

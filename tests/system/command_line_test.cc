@@ -7,7 +7,9 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -54,6 +56,51 @@ TEST(ConsoleTest, HelpIsNoMistakeAndNothingIs) {
   EXPECT_EQ(console("").exit_code, 2);
   EXPECT_EQ(console("lunch").exit_code, 2);
   EXPECT_EQ(console("--log-level loud launch --world reef:sparse --out x").exit_code, 2);
+}
+
+std::vector<std::string> linesOf(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+// Each command's help ends with examples, and each of these is understood: with one word more, that word is
+// all that is wrong, or a file that the example names is not there.
+TEST(ConsoleTest, EveryHelpHasAnExampleThatIsUnderstood) {
+  std::vector<std::string> commands;
+  bool in_commands = false;
+  for (const std::string& line : linesOf(console("--help").output)) {
+    if (in_commands && line.starts_with("  ") && line[2] != ' ')
+      commands.push_back(line.substr(2, line.find(' ', 2) - 2));
+    in_commands |= line == "Subcommands:";
+  }
+  ASSERT_GE(commands.size(), 30u);
+  commands.insert(commands.end(), {"library save", "library show"});
+  const std::string program = "operator_console ", wrong = "--a-word-too-many";
+  int tried = 0;
+  for (const std::string& command : commands) {
+    int examples = 0;
+    std::string help = console(command + " --help").output;
+    for (size_t at; (at = help.find("\\\n")) != std::string::npos;)
+      help.erase(at, 2);  // it goes on in the next line
+    for (const std::string& line : linesOf(help)) {
+      const size_t at = line.find(program);
+      if (!line.starts_with("  ") || at == std::string::npos) continue;
+      examples += line.compare(at, program.size() + command.size(), program + command) == 0 ? 1 : 0;
+      const size_t begin = at + program.size();
+      const std::string example = line.substr(begin, line.find_first_of(">|)", begin) - begin);
+      const Outcome outcome = console(example + " " + wrong);
+      EXPECT_EQ(outcome.exit_code, 2) << example;
+      EXPECT_TRUE(outcome.output.starts_with("The following argument was not expected: " + wrong + "\n") ||
+                  outcome.output.find("File does not exist: ") != std::string::npos)
+          << example << "\n"
+          << outcome.output;
+      ++tried;
+    }
+    EXPECT_GE(examples, 1) << command;
+  }
+  EXPECT_GE(tried, 45);
 }
 
 TEST(LaunchTest, NamesTheOptionThatIsWrong) {
