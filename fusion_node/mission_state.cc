@@ -60,6 +60,8 @@ mapping::NodeStatus statusOf(const std::string& node, const wire::Heartbeat& h, 
           .z_m = h.z_m,
           .rejected = h.rejected,
           .conflicts = h.conflicts,
+          .battery_percent = h.battery_percent < 0 ? std::nullopt : std::optional(h.battery_percent),
+          .depth_m = h.depth_cm < 0 ? std::nullopt : std::optional(h.depth_cm / 100.0),
           .heard_whole = heard_whole,
           .agreement = agreement(h, ours)};
 }
@@ -72,6 +74,9 @@ MissionState::MissionState(int32_t mission, const matching::MatcherOptions& matc
 
 bool MissionState::hear(const comms::Packet& packet, comms::Stats& stats) {
   const bool news = takeIn(packet, stats);
+  if (const auto channel = comms::parseChannel(packet.channel);
+      channel && channel->kind != "MAP")  // not of the link
+    links_.heard(channel->node, comms::wireSize(packet));
   events_.refused(packet.channel, stats);
   return news;
 }
@@ -111,6 +116,7 @@ bool MissionState::takeIn(const comms::Packet& packet, comms::Stats& stats) {
         beliefs_.noteEpoch(*robot, heartbeat->epoch);
       }
       twins_.heard(channel->node, *heartbeat);
+      links_.claimed(channel->node, *heartbeat);
       wire::Heartbeat& held = heartbeats_[channel->node];
       const auto age = [](const wire::Heartbeat& h) { return std::pair(h.epoch, h.time); };
       if (age(*heartbeat) >= age(held)) held = *heartbeat;
@@ -257,6 +263,7 @@ mapping::MissionView MissionState::overview() const {
   for (const auto& [name, h] : heartbeats_) {
     view.nodes.push_back(statusOf(name, h, holdsWhole(name), {fused_.stateDigest(), mapDigest()}));
     view.nodes.back().clock_skew_s = clocks_.skewOf(name);
+    view.nodes.back().heard_share = links_.shareOf(name);
     if (const auto robot = world::parseRobotId(name))
       view.nodes.back().settings = toText(compare(beliefs_, *robot, common));
   }

@@ -10,6 +10,7 @@
 
 #include "fusion_node/clock_watch.h"
 #include "fusion_node/event_log.h"
+#include "fusion_node/link_watch.h"
 #include "fusion_node/twin_watch.h"
 #include "shoal/comms/packet.h"
 #include "shoal/comms/stats.h"
@@ -120,6 +121,7 @@ class MissionState {
   std::map<std::string, uint64_t> sealed_nodes_;
   ClockWatch clocks_;
   TwinWatch twins_;
+  LinkWatch links_;
   double clock_tolerance_s_ = kClockTolerance;
   int32_t conflicts_ = 0;
   world::Timestamp latest_;

@@ -20,7 +20,7 @@ using Json = nlohmann::ordered_json;
 
 struct StatusQuestion {
   Asking asking;
-  bool watch = false;
+  bool watch = false, where = false;
   double every_s = 2;
 };
 
@@ -35,19 +35,42 @@ std::string timeToClear(const Json& n) {
   return n["budget"].get<int64_t>() == 0 ? "-" : fmt::format("{:.0f}", n["clear_s"].get<double>());
 }
 
+// What of it arrives, in percent.
+std::string linkQuality(const Json& n) {
+  const auto share = n.find("heard_share");
+  return share == n.end() || share->is_null() ? "-" : fmt::format("{:.0f}", 100 * share->get<double>());
+}
+
 void printRow(const Json& n) {
   const bool flies = n["phase"] != "node";
   const std::string images =
       fmt::format("{}/{}", n["observation"].get<int>() + 1, n["num_observations"].get<int>());
   const std::string told = !flies ? "-" : n["heard_whole"].get<bool>() ? "all" : "part";
   const std::string agreement = n["agreement"];
-  fmt::print("{:<8} {:<7} {:>7.1f} {:>7} {:>6} {:>6} {:>4} {:>6} {:>5} {:>3} {:<4} {}\n",
+  fmt::print("{:<8} {:<7} {:>7.1f} {:>7} {:>6} {:>6} {:>4} {:>4} {:>6} {:>5} {:<4} {}\n",
              n["name"].get<std::string>(), n["phase"].get<std::string>(), n["heard_s"].get<double>(),
-             flies ? images : "-", n["topics"].get<int>(), n["cells"].get<int>(), budgetUsed(n),
-             n["queue_bytes"].get<int>(), timeToClear(n), n["rejected"].get<int>(), told,
+             flies ? images : "-", n["topics"].get<int>(), n["cells"].get<int>(), linkQuality(n),
+             budgetUsed(n), n["queue_bytes"].get<int>(), timeToClear(n), told,
              agreement == "none"    ? "-"
              : agreement == "other" ? alarming("OTHER")
                                     : agreement);
+}
+
+// Where everybody is, and what their vehicles say of themselves.
+void printPlaces(const Json& a) {
+  fmt::print("\n{:<8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>9}\n", "node", "x m", "y m", "z m", "depth m",
+             "battery", "ms/image");
+  for (const Json& n : a["nodes"]) {
+    if (n["phase"] == "node") continue;
+    const Json& p = n["position_m"];
+    const auto known = [&n](const char* key, const char* unit) {
+      const auto found = n.find(key);
+      return found == n.end() || found->is_null() ? "-" : fmt::format("{}{}", found->get<double>(), unit);
+    };
+    fmt::print("{:<8} {:>8.1f} {:>8.1f} {:>8.1f} {:>8} {:>8} {:>9.1f}\n", n["name"].get<std::string>(),
+               p[0].get<double>(), p[1].get<double>(), p[2].get<double>(), known("depth_m", ""),
+               known("battery_percent", " %"), n["ms_per_frame"].get<double>());
+  }
 }
 
 void print(const Json& a) {
@@ -65,9 +88,13 @@ void print(const Json& a) {
                    ? alarming(", NOT THE ONE THIS NODE WAS GIVEN: " + (*library)["given"].get<std::string>())
                    : "");
   }
-  fmt::print("{:<8} {:<7} {:>7} {:>7} {:>6} {:>6} {:>4} {:>6} {:>5} {:>3} {:<4} {}\n", "node", "phase",
-             "heard s", "images", "topics", "cells", "used", "queue", "clear", "bad", "told", "map");
+  fmt::print("{:<8} {:<7} {:>7} {:>7} {:>6} {:>6} {:>4} {:>4} {:>6} {:>5} {:<4} {}\n", "node", "phase",
+             "heard s", "images", "topics", "cells", "link", "used", "queue", "clear", "told", "map");
   for (const Json& n : a["nodes"]) printRow(n);
+  for (const Json& n : a["nodes"])
+    if (n["rejected"].get<int>() > 0)
+      fmt::print("{:<8} {} {} messages\n", n["name"].get<std::string>(), alarming("refused"),
+                 n["rejected"].get<int>());
   for (const Json& m : a["mixed"])
     fmt::print("{:<8} {}: {}\n", m["node"].get<std::string>(), alarming(m["kind"].get<std::string>()),
                m["says"].get<std::string>());
@@ -86,6 +113,7 @@ int status(const StatusQuestion& q) {
       std::cout << a.dump(q.watch ? -1 : 2) << '\n';
     } else {
       print(a);
+      if (q.where) printPlaces(a);
     }
     if (!std::cout.flush() || std::fflush(stdout) != 0) break;  // nobody reads any more
     const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>(q.every_s);
@@ -102,6 +130,8 @@ void addStatusCommand(CLI::App& app, Action& chosen) {
   CLI::App* command = app.add_subcommand("status", "how every node of a mission is doing");
   const auto q = std::make_shared<StatusQuestion>();
   addWhere(*command, q->asking);
+  command->add_flag("--where", q->where,
+                    "also where each is, its depth, its battery, its milliseconds an image");
   auto* watch =
       command->add_flag("--watch", q->watch, "ask again and again until Ctrl-C; with --json a line each");
   command->add_option("--every", q->every_s, "seconds between two looks")
@@ -109,9 +139,9 @@ void addStatusCommand(CLI::App& app, Action& chosen) {
       ->check(CLI::Range(0.1, 3600.0))
       ->capture_default_str();
   command->footer(
-      "used: bytes sent of what the budget allowed so far. queue: bytes that wait. clear: seconds until "
-      "they\n"
-      "are said, if nothing new comes. bad: messages refused.\n"
+      "link: percent of the bytes a node sent in its last minute that arrived here. used: bytes sent of\n"
+      "what the budget allowed so far. queue: bytes that wait. clear: seconds until they are said, if\n"
+      "nothing new comes. refused: messages that it did not understand, each node a line.\n"
       "told: whether all that a robot has to say was heard. map: the same as this one, made of another\n"
       "state (behind), or OTHER though made of the same state: an alarm, unless a recording was asked with\n"
       "another --matcher than the mission's. Below the table: clocks that are off, twins, other missions, "

@@ -451,6 +451,9 @@ comms::Packet Agent::heartbeat(int64_t now_us) {
     h.y_m = position.y();
     h.z_m = position.z();
   }
+  const world::Vehicle vehicle = source_.vehicle();
+  h.battery_percent = vehicle.battery_percent.value_or(-1);
+  if (vehicle.depth_m) h.depth_cm = static_cast<int32_t>(std::lround(100 * *vehicle.depth_m));
   h.bytes_sent = static_cast<int64_t>(sender_.stats().linkBytes());
   h.budget = static_cast<int32_t>(options_.budget);
   h.queue_bytes = static_cast<int32_t>(std::min<int64_t>(sender_.backlog(), INT32_MAX));

@@ -45,6 +45,9 @@ void CameraStream::take(const comms::Packet& packet) {
   if (packet.channel == channels_.pose) {
     const auto pose = wire::decodePose(packet.bytes);
     pose ? live_.addPose(*pose) : refuse(pose.error());
+  } else if (packet.channel == channels_.vehicle) {
+    const auto vehicle = wire::decodeVehicle(packet.bytes);
+    vehicle ? void(vehicle_ = *vehicle) : refuse(vehicle.error());
   } else if (packet.channel == channels_.image) {
     const auto image = wire::decodeImage(packet.bytes);
     image ? takeColor(*image) : refuse(image.error());

@@ -29,6 +29,7 @@ class CameraStream final : public world::ObservationSource {
   std::optional<world::Observation> next() override { return live_.next(); }
   std::optional<int32_t> numObservations() const override { return live_.numObservations(); }
   std::string troubles() const override;
+  world::Vehicle vehicle() const override { return vehicle_; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -45,6 +46,7 @@ class CameraStream final : public world::ObservationSource {
   world::LiveSource live_;
   std::array<uint64_t, wire::kNumDecodeErrors> refused_{};
   uint64_t other_size_ = 0;
+  world::Vehicle vehicle_;
   Clock::time_point last_picture_;
 };
 

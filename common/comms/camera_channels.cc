@@ -10,7 +10,11 @@
 namespace shoal::comms {
 
 CameraChannels::CameraChannels(const std::string& prefix)
-    : image(prefix + "_IMAGE"), depth(prefix + "_DEPTH"), images(prefix + "_IMAGES"), pose(prefix + "_POSE") {
+    : image(prefix + "_IMAGE"),
+      depth(prefix + "_DEPTH"),
+      images(prefix + "_IMAGES"),
+      pose(prefix + "_POSE"),
+      vehicle(prefix + "_STATUS") {
   const auto plain = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
   const bool good = !prefix.empty() && images.size() <= kMaxChannelLength &&
                     std::ranges::all_of(prefix, plain) && !prefix.starts_with("SHOAL_");

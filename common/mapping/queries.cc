@@ -40,6 +40,9 @@ Json toJson(const NodeStatus& n) {
           {"conflicts", n.conflicts},
           {"clock_skew_s", n.clock_skew_s ? Json(rounded(*n.clock_skew_s, 1e3)) : Json()},
           {"settings", n.settings},
+          {"heard_share", n.heard_share ? Json(rounded(*n.heard_share, 1e3)) : Json()},
+          {"battery_percent", n.battery_percent ? Json(*n.battery_percent) : Json()},
+          {"depth_m", n.depth_m ? Json(rounded(*n.depth_m, 1e2)) : Json()},
           {"heard_whole", n.heard_whole},
           {"agreement", n.agreement}};
 }
@@ -65,9 +68,14 @@ NodeStatus nodeFromJson(const Json& json) {
   json.at("heard_whole").get_to(n.heard_whole);
   n.agreement = json.value("agreement", "none");  // runs of older builds do not say
   n.settings = json.value("settings", "none");
-  if (const auto skew = json.find("clock_skew_s"); skew != json.end() && skew->is_number()) {
-    n.clock_skew_s = skew->get<double>();
-  }
+  const auto number = [&json](const char* key) {
+    const auto found = json.find(key);
+    return found != json.end() && found->is_number() ? std::optional(found->get<double>()) : std::nullopt;
+  };
+  n.clock_skew_s = number("clock_skew_s");
+  n.heard_share = number("heard_share");
+  n.depth_m = number("depth_m");
+  if (const auto percent = number("battery_percent")) n.battery_percent = static_cast<int>(*percent);
   return n;
 }
 

@@ -37,7 +37,12 @@ struct NodeStatus {
   /// What it learns with beside what most robots do: "same", "other words", "other hyper-parameters", "other
   /// cells", "unknown"; "none" when it is no robot.
   std::string settings = "none";
-  bool heard_whole = false;  ///< the answering node holds all that this one has to say
+  /// Part of the bytes it sent in its last minute that arrived where the answer comes from, in [0, 1];
+  /// nothing while that is not known.
+  std::optional<double> heard_share = {};
+  std::optional<int> battery_percent = {};  ///< in [0, 100], when its vehicle says so
+  std::optional<double> depth_m = {};       ///< below the surface, >= 0, when its vehicle says so
+  bool heard_whole = false;                 ///< the answering node holds all that this one has to say
   /// Its map beside that of who answers: "same"; "behind" when it was made from another state; "other" when
   /// the states are equal and the maps are not, which is an alarm; "none" when it does not fuse.
   std::string agreement = "none";

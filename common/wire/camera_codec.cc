@@ -2,6 +2,7 @@
 #include "shoal/wire/camera_codec.h"
 
 #include <bit>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 
@@ -9,6 +10,7 @@
 #include <bot_core/images_t.hpp>
 #include <bot_core/pose_t.hpp>
 #include <bot_core/rigid_transform_t.hpp>
+#include <shoal/vehicle_t.hpp>
 
 #include "shoal/demand.h"
 #include "shoal/wire/limits.h"
@@ -20,6 +22,8 @@ int64_t int64From(ByteReader& in) { return static_cast<int64_t>(in.bigEndian(8))
 int32_t int32From(ByteReader& in) { return static_cast<int32_t>(in.bigEndian(4)); }
 int16_t int16From(ByteReader& in) { return static_cast<int16_t>(in.bigEndian(2)); }
 double doubleFrom(ByteReader& in) { return std::bit_cast<double>(in.bigEndian(8)); }
+
+constexpr float kDeepest = 20000.f;  // metres
 
 bool isTime(int64_t us) { return us >= 0 && us <= kMaxTimeUs; }
 
@@ -126,6 +130,23 @@ Bytes encoded(const Message& message) {
 }
 
 }  // namespace
+
+Result<world::Vehicle> decodeVehicle(std::span<const uint8_t> bytes) {
+  const auto fingerprint = fingerprintOf(bytes);
+  if (!fingerprint) return fingerprint.error();
+  if (*fingerprint != vehicle_t::getHash()) return DecodeError::kWrongType;
+  ByteReader in(bytes.subspan(8));
+  const int64_t time_us = int64From(in);
+  const float battery = std::bit_cast<float>(static_cast<uint32_t>(in.bigEndian(4)));
+  const float depth = std::bit_cast<float>(static_cast<uint32_t>(in.bigEndian(4)));
+  if (in.failed()) return DecodeError::kBadLength;
+  if (in.remaining() > 0) return DecodeError::kTrailingBytes;
+  if (!isTime(time_us) || !(battery <= 100.f) || !(depth <= kDeepest)) return DecodeError::kBadField;
+  world::Vehicle vehicle;
+  if (battery >= 0) vehicle.battery_percent = static_cast<int32_t>(std::lround(battery));
+  if (depth >= 0) vehicle.depth_m = depth;
+  return vehicle;
+}
 
 Bytes encode(const ImageView& image) {
   if (image.data.size() + 64 > kMaxCameraBytes) {

@@ -10,6 +10,7 @@
 #include "shoal/wire/result.h"
 #include "shoal/world/ids.h"
 #include "shoal/world/pose_track.h"
+#include "shoal/world/source.h"
 
 namespace shoal::wire {
 
@@ -58,6 +59,9 @@ Result<std::vector<KindAndImage>> decodeImages(std::span<const uint8_t> bytes);
 
 /// Reads a pose_t or a rigid_transform_t; the pose is sane.
 Result<world::TimedPose> decodePose(std::span<const uint8_t> bytes);
+
+/// Reads a vehicle_t, one of our own types: what is not known is nothing. Numbers out of range are refused.
+Result<world::Vehicle> decodeVehicle(std::span<const uint8_t> bytes);
 
 /// Writes an image_t without metadata. @throws std::invalid_argument above kMaxCameraBytes.
 Bytes encode(const ImageView& image);

@@ -56,6 +56,8 @@ struct Heartbeat {
   int32_t conflicts = 0;            ///< same version, other content, >= 0
   float ms_per_frame = 0;           ///< mean wall time per observation, finite, >= 0
   std::array<int64_t, kNumClasses> class_bytes{};  ///< bytes_sent by traffic class, each >= 0
+  int32_t battery_percent = -1;                    ///< of its vehicle, in [0, 100]; -1: not known
+  int32_t depth_cm = -1;                           ///< of its vehicle below the surface, >= 0; -1: not known
   std::vector<Share> roster;                       ///< ascending by robot; at most kMaxRoster
   bool operator==(const Heartbeat&) const = default;
 };
@@ -63,7 +65,8 @@ struct Heartbeat {
 /// The 32 bits of a robot's digest that travel in rosters.
 constexpr uint32_t shareDigest(uint64_t digest) { return static_cast<uint32_t>(digest ^ digest >> 32); }
 
-/// A heartbeat as heartbeat_t: 142 bytes, 7 to 70 for the classes, about 4 a robot of the roster.
+/// A heartbeat as heartbeat_t: 142 bytes, 7 to 70 for the classes, about 4 a robot of the roster,
+/// 2 to 6 for battery and depth when either is known.
 ///
 /// A roster that does not fit is cut at its high end; 256 robots fit when their numbers have few gaps.
 /// @throws std::invalid_argument naming what is out of range, or when `max_payload` is below 200.

@@ -141,6 +141,7 @@ class SensedSource final : public ObservationSource {
   std::optional<int32_t> numObservations() const override { return source_->numObservations(); }
   bool ready() override { return source_->ready(); }
   std::string troubles() const override { return source_->troubles(); }
+  Vehicle vehicle() const override { return source_->vehicle(); }
 
  private:
   Random randomFor(Sensor sensor, const Observation& seen) const {

@@ -1,12 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
 #include "shoal/world/observation.h"
 
 namespace shoal::world {
+
+/// What a vehicle says of itself.
+struct Vehicle {
+  std::optional<int32_t> battery_percent;  ///< in [0, 100]
+  std::optional<double> depth_m;           ///< below the surface, in [0, 20000]
+};
 
 /// A stream of observations, in time order: flown over a world, recorded, or live.
 class ObservationSource {
@@ -24,6 +31,9 @@ class ObservationSource {
 
   /// What was left out so far and why, for people; empty when nothing was.
   virtual std::string troubles() const { return {}; }
+
+  /// The latest that is known of the vehicle that carries the camera.
+  virtual Vehicle vehicle() const { return {}; }
 };
 
 }  // namespace shoal::world

@@ -2,6 +2,7 @@
 // What a robot's cameras say on a bus, as observations; messages made by lcm-gen's code.
 #include "robot_agent/camera_stream.h"
 
+#include <limits>
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -9,6 +10,7 @@
 #include <bot_core/images_t.hpp>
 #include <bot_core/rigid_transform_t.hpp>
 #include <opencv2/imgcodecs.hpp>
+#include <shoal/vehicle_t.hpp>
 
 #include "shoal/comms/memory_bus.h"
 #include "shoal/wire/camera_pixels.h"
@@ -118,6 +120,45 @@ TEST_F(CameraStreamTest, CountsWhatItCannotUse) {
       stream.troubles(),
       "1 messages of pictures not of the camera's size, 1 messages refused: too short, 3 messages refused: "
       "wrong type, 1 messages refused: unknown format");
+}
+
+TEST_F(CameraStreamTest, KeepsWhatTheVehicleSaidLastOfItself) {
+  CameraStream stream(*robot_, "CAM", usual(), 0);
+  EXPECT_FALSE(stream.vehicle().battery_percent || stream.vehicle().depth_m);
+  shoal::vehicle_t vehicle{};
+  const auto told = [&](float battery_percent, float depth_m) {
+    vehicle.battery_percent = battery_percent;
+    vehicle.depth_m = depth_m;
+    say("CAM_STATUS", encoded(vehicle));
+    stream.ready();
+    return stream.vehicle();
+  };
+  EXPECT_EQ(told(86.6f, 12.25f).battery_percent, 87);
+  EXPECT_EQ(told(86.6f, 12.25f).depth_m, 12.25);
+  EXPECT_EQ(told(100, -1).battery_percent, 100);
+  EXPECT_FALSE(stream.vehicle().depth_m);
+  EXPECT_EQ(told(-1, 0).depth_m, 0.0);
+  EXPECT_FALSE(stream.vehicle().battery_percent);
+  EXPECT_EQ(stream.troubles(), "");
+  constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+  for (const auto& [battery, depth] : {std::pair(101.f, 5.f), {kNone, 5.f}, {50.f, kNone}, {50.f, 1e9f}}) {
+    EXPECT_EQ(told(battery, depth).depth_m, 0.0);  // what was known stays
+  }
+  vehicle = {};
+  comms::Bytes bytes = encoded(vehicle);
+  for (size_t size = 0; size < bytes.size(); ++size) {
+    say("CAM_STATUS", comms::Bytes(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size)));
+  }
+  bytes.push_back(0);
+  say("CAM_STATUS", bytes);
+  vehicle.utime = -1;
+  say("CAM_STATUS", encoded(vehicle));
+  stream.ready();
+  EXPECT_EQ(stream.vehicle().depth_m, 0.0);
+  EXPECT_NE(stream.troubles().find("5 messages refused: field out of range"), std::string::npos)
+      << stream.troubles();
+  EXPECT_NE(stream.troubles().find("1 messages refused: trailing bytes"), std::string::npos)
+      << stream.troubles();
 }
 
 TEST_F(CameraStreamTest, EndsWhenNoPictureCameForTooLong) {

@@ -328,6 +328,8 @@ Heartbeat noiseHeartbeat(int num_robots, int robot_gap, Random& random) {
   for (int32_t* field : {&h.budget, &h.queue_bytes, &h.rejected, &h.conflicts}) *field = count();
   h.ms_per_frame = static_cast<float>(100 * random.uniform());
   for (int64_t& bytes : h.class_bytes) bytes = count();
+  if (random.below(2) == 0) h.battery_percent = static_cast<int32_t>(random.below(102)) - 1;
+  if (random.below(2) == 0) h.depth_cm = random.below(2) == 0 ? std::numeric_limits<int32_t>::max() : count();
   int robot = 0;
   for (int i = 0; i < num_robots; ++i) {
     h.roster.push_back({RobotId{robot}, static_cast<uint32_t>(random())});

@@ -23,6 +23,24 @@ TEST(HeartbeatCodecTest, KeepsEveryField) {
   }
 }
 
+TEST(HeartbeatCodecTest, BatteryAndDepthTakeRoomWhenTheyAreKnown) {
+  Random random(5);
+  Heartbeat heartbeat = noiseHeartbeat(12, 1, random);
+  const auto size = [&heartbeat](int32_t battery_percent, int32_t depth_cm) {
+    heartbeat.battery_percent = battery_percent;
+    heartbeat.depth_cm = depth_cm;
+    const Bytes bytes = encode(heartbeat);
+    EXPECT_EQ(*decodeHeartbeat(bytes), heartbeat);
+    return bytes.size();
+  };
+  const size_t without = size(-1, -1);
+  EXPECT_EQ(size(0, -1), without + 2);
+  EXPECT_EQ(size(100, -1), without + 2);
+  EXPECT_EQ(size(-1, 0), without + 2);
+  EXPECT_EQ(size(87, 1234), without + 3);
+  EXPECT_EQ(size(87, std::numeric_limits<int32_t>::max()), without + 6);
+}
+
 TEST(HeartbeatCodecTest, IsSmallForTwelveRobots) {
   Random random(2);
   for (int trial = 0; trial < 100; ++trial) EXPECT_LT(encode(noiseHeartbeat(12, 1, random)).size(), 260u);
@@ -69,6 +87,9 @@ TEST(HeartbeatCodecTest, RefusesToEncodeNonsense) {
   broken([](Heartbeat& h) { h.ms_per_frame = std::numeric_limits<float>::infinity(); });
   broken([](Heartbeat& h) { h.cell_size_m = 0; });
   broken([](Heartbeat& h) { h.class_bytes[5] = -1; });
+  broken([](Heartbeat& h) { h.battery_percent = 101; });
+  broken([](Heartbeat& h) { h.battery_percent = -2; });
+  broken([](Heartbeat& h) { h.depth_cm = -2; });
   broken([](Heartbeat& h) { h.roster = {{world::RobotId{2}, 0}, {world::RobotId{2}, 0}}; });
   broken([](Heartbeat& h) { h.roster = {{world::RobotId{10001}, 0}}; });
   EXPECT_THROW(encode(Heartbeat{}, 100), std::invalid_argument);

@@ -36,8 +36,15 @@ def _read_heartbeat(m, payload):
         require(follows <= OPERATORS + 1 and len(robots) + follows - first <= 256, "roster", "bad payload")
         robots += range(first, follows)
     require(len(payload) - at >= 4 * len(robots), "the payload ends early", "bad payload")
-    require(len(payload) - at == 4 * len(robots), "bytes after the end of the payload", "not canonical")
     m["roster"] = [(robot, int.from_bytes(payload[at + 4 * i:at + 4 * i + 4], "big")) for i, robot in enumerate(robots)]
+    at += 4 * len(robots)
+    m["battery_percent"] = m["depth_cm"] = None
+    if at < len(payload):
+        battery, depth = varint(), varint()
+        require(battery <= 101 and depth <= 2**31, "battery or depth", "bad payload")
+        require(battery or depth, "a battery and a depth that are not known", "not canonical")
+        m["battery_percent"], m["depth_cm"] = battery - 1 if battery else None, depth - 1 if depth else None
+    require(at == len(payload), "bytes after the end of the payload", "not canonical")
     require(all(count < 2**63 for count in m["class_bytes"].values()), "class_bytes")
     require(m["phase"] < len(PHASES) and m["epoch"] >= 0 and m["observation"] >= -1, "phase, epoch or observation")
     require(0 <= m["num_topics"] <= MAX_TOPIC + 1, "num_topics")
