@@ -31,6 +31,7 @@ Json toJson(const NodeStatus& n) {
           {"topics", n.topics},
           {"cells", n.cells},
           {"bytes_sent", n.bytes_sent},
+          {"class_bytes", n.class_bytes},
           {"budget", n.budget},
           {"queue_bytes", n.queue_bytes},
           {"clear_s", rounded(n.clearSeconds(), 1e1)},
@@ -65,6 +66,7 @@ NodeStatus nodeFromJson(const Json& json) {
   json.at("heard_whole").get_to(n.heard_whole);
   n.agreement = json.value("agreement", "none");  // runs of older builds do not say
   n.settings = json.value("settings", "none");
+  if (const auto classes = json.find("class_bytes"); classes != json.end()) classes->get_to(n.class_bytes);
   if (const auto skew = json.find("clock_skew_s"); skew != json.end() && skew->is_number()) {
     n.clock_skew_s = skew->get<double>();
   }
