@@ -264,6 +264,19 @@ try {
     await small.close();
   }
 
+  // The map as one robot holds it, and a link to that.
+  await page.locator("#holders").selectOption("R01");
+  await until(async () => (await text("#phase")) === "as R01 held it" && (await cells()) < all, "the map as R01 held it");
+  assert.match(await text("#holding"), /R01 fuses nothing: it holds its own/);
+  assert.ok(await page.locator("#undo").isHidden(), "nothing is decided there");
+  await shot("held");
+  const theirs = await (await browser.newContext()).newPage();
+  await theirs.goto(page.url());
+  await until(async () => (await theirs.locator("#phase").innerText()) === "as R01 held it", "the link tells whose map it is");
+  await theirs.close();
+  await page.locator("#holders").selectOption("");
+  await until(async () => (await cells()) === all, "all of it again");
+
   // It survives a reload, with its key.
   await page.reload();
   await page.waitForSelector("#legend .label");

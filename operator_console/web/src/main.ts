@@ -222,7 +222,7 @@ function showRobots(): void {
                        "data-key": n.name, title: number === null ? n.name : "Click: only what this robot saw last" },
       el("span", { class: "dot", style: `background:${number === null ? "#1d2733" : kind === "bad" ? "#8a8f96" : robotColor(number)}` }),
       el("span", { class: "name" }, n.name), el("span", { class: "state " + kind }, text),
-      el("span", { class: "number dim" }, number === null ? "" : `${n.observation + 1}${n.num_observations ? "/" + n.num_observations : ""} images`),
+      el("span", { class: "number dim" }, number === null ? "" : `${n.observation + 1}${n.num_observations ? "/" + n.num_observations : ""}`),
       el("span", { class: "number", title: `${n.bytes_sent} bytes sent, ${n.queue_bytes} waiting` }, n.budget > 0 ? `${(100 * used).toFixed(0)} % of ${rateText(n.budget)}` : `${(n.bytes_sent / 1000).toFixed(1)} kB`),
       number !== null && mayWrite() && past === null ? el("button", { class: "small", "data-key": "exclude " + n.name, title: "Make the map as if it had never been there", click: (e) => { e.stopPropagation(); if (confirm(`Make the map as if ${n.name} had never been there? Undo brings it back.`)) void decided({ edit: "exclude", robot: n.name }); } }, "exclude") : null);
   }));

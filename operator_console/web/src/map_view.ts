@@ -9,7 +9,7 @@ export const LAYERS: Layer[] = ["label", "certainty", "surprise", "age", "robot"
 export interface Cell { x: number; y: number; z: number; label: number; seen: number; robot: number; certainty: number; surprise: number; truth: number | null }
 
 const CHUNK = 8; // tiles along the edge of a picture
-const SILENT_S = 5;
+const SILENT_S = 5, HEARTBEAT_BYTES = 250, HEARTBEAT_SHARE = 0.2; // a heartbeat takes at most a fifth of the budget
 
 // Another way to show the same cells, under this canvas.
 export interface DepthView {
@@ -344,4 +344,6 @@ export class MapView {
 }
 
 // Heard last while others were heard later, and not because it has landed.
-export const isSilent = (node: Node, newest: number): boolean => node.phase === "flying" && newest - node.heard_s > SILENT_S;
+// Four heartbeats, as seldom as its budget makes them.
+export const isSilent = (node: Node, newest: number): boolean =>
+  node.phase === "flying" && newest - node.heard_s > Math.max(SILENT_S, node.budget > 0 ? (4 * HEARTBEAT_BYTES) / (HEARTBEAT_SHARE * node.budget) : 0);
