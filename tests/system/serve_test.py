@@ -388,6 +388,9 @@ class Serve(unittest.TestCase):
     def test_foxglove_looks_at_the_same_mission(self):
         cells, header = tiles(self.server.ask("/api/map?cells=all")[1])
         colors = {row["label"]: bytes.fromhex(row["color"][1:]) for row in self.server.json("/api/labels")["labels"]}
+        for offered, spoken in (("foxglove.sdk.v1", "foxglove.sdk.v1"), ("foxglove.sdk.v1, foxglove.websocket.v1", "foxglove.websocket.v1")):
+            with WebSocket(self.server.foxglove, subprotocol=offered) as client:
+                self.assertEqual((client.status, client.headers["sec-websocket-protocol"]), (101, spoken))
         with WebSocket(self.server.foxglove) as client:
             self.assertEqual((client.status, client.headers["sec-websocket-protocol"]), (101, "foxglove.websocket.v1"))
             info, offer = client.said(), client.said()
