@@ -40,6 +40,20 @@ std::string agreement(const wire::Heartbeat& h, const Digests& ours) {
   return h.map_digest == ours.map ? "same" : "other";
 }
 
+// Of what nodes do to repair the state, a heartbeat holds the sum alone: the rest of all bytes.
+std::map<std::string, int64_t> classBytes(const wire::Heartbeat& h) {
+  std::map<std::string, int64_t> sent;
+  int64_t rest = h.bytes_sent;
+  for (size_t i = 0; i < wire::Heartbeat::kNumClasses; ++i) {
+    if (comms::TrafficClass{static_cast<uint8_t>(i)} == comms::TrafficClass::kLocal)
+      continue;  // not on the link
+    sent[std::string(comms::kTrafficClassNames[i])] = h.class_bytes[i];
+    rest -= std::min(rest, h.class_bytes[i]);
+  }
+  sent["repair"] = rest;
+  return sent;
+}
+
 }  // namespace
 
 mapping::NodeStatus statusOf(const std::string& node, const wire::Heartbeat& h, bool heard_whole,
@@ -63,7 +77,8 @@ mapping::NodeStatus statusOf(const std::string& node, const wire::Heartbeat& h, 
           .battery_percent = h.battery_percent < 0 ? std::nullopt : std::optional(h.battery_percent),
           .depth_m = h.depth_cm < 0 ? std::nullopt : std::optional(h.depth_cm / 100.0),
           .heard_whole = heard_whole,
-          .agreement = agreement(h, ours)};
+          .agreement = agreement(h, ours),
+          .class_bytes = classBytes(h)};
 }
 
 MissionState::MissionState(int32_t mission, const matching::MatcherOptions& matcher, double cell_size_m,

@@ -300,7 +300,8 @@ Json Node::answer(const Json& question) {
   if (query == "ask") return answerAsk(question);
   if (query == "status") return answerStatus();
   if (query == "map" && question.contains("has")) return answerChanges(question);
-  const mapping::MissionView known = query == "pictures" ? overview() : view();
+  const bool needs_no_cells = query == "pictures" || query == "events";
+  const mapping::MissionView known = needs_no_cells ? overview() : view();
   const auto beliefs = [this]() -> const mapping::BeliefStore& { return state_.beliefs(); };
   return mapping::answer({known, beliefs, state_.matcher(), [this] { return state_.events(); }}, question);
 }

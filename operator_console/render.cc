@@ -12,7 +12,6 @@
 #include "shoal/mapping/csv.h"
 #include "shoal/mapping/map_files.h"
 #include "shoal/matching/assignment.h"
-#include "shoal/random.h"
 
 namespace shoal::console {
 namespace {
@@ -121,15 +120,23 @@ void drawLegend(cv::Mat& picture, cv::Point at, const std::string& heading,
 
 }  // namespace
 
+// Each the farthest from all before it to whichever of three eyes sees them most alike: usual ones (which
+// count half), protanopes' and deuteranopes' (CIE L*a*b*, G. Machado et al. 2009). A robot's own topics get
+// different ones; the step between robots is the one that mixed up the fewest large labels of the maps that
+// we had.
 Rgb colorOf(world::GlobalLabel label) {
-  const uint64_t hash = mix64(static_cast<uint64_t>(number(label)) + 17);
-  cv::Mat3b hsv(1, 1,
-                cv::Vec3b(static_cast<uint8_t>(hash % 180), static_cast<uint8_t>(110 + (hash >> 16) % 130),
-                          static_cast<uint8_t>(130 + (hash >> 32) % 115)));
-  cv::Mat3b color;
-  cv::cvtColor(hsv, color, cv::COLOR_HSV2RGB);
-  const cv::Vec3b c = color(0, 0);
-  return {c[0], c[1], c[2]};
+  static constexpr std::array<Rgb, 36> kColors = {
+      {{0x00, 0x72, 0xb2}, {0xd5, 0x5e, 0x00}, {0x3c, 0xf0, 0x96}, {0xa5, 0x00, 0x5a}, {0xd2, 0xd2, 0x00},
+       {0x78, 0x4b, 0xe1}, {0x2d, 0x4b, 0x0f}, {0xff, 0xc3, 0xe1}, {0x1e, 0xa5, 0x96}, {0xff, 0x0f, 0x4b},
+       {0xff, 0x87, 0xf0}, {0xa5, 0x96, 0x69}, {0x87, 0x5a, 0x87}, {0xf0, 0xb4, 0x4b}, {0x0f, 0x4b, 0x4b},
+       {0x87, 0x00, 0x87}, {0x96, 0xc3, 0x69}, {0x69, 0x87, 0xff}, {0x00, 0x87, 0x3c}, {0xff, 0x78, 0xa5},
+       {0xa5, 0x0f, 0x1e}, {0x5a, 0xc3, 0xff}, {0x87, 0x3c, 0x3c}, {0x3c, 0xc3, 0x2d}, {0xe1, 0x2d, 0xc3},
+       {0x00, 0x3c, 0xa5}, {0x96, 0xe1, 0xb4}, {0xa5, 0x78, 0x78}, {0x96, 0x4b, 0x00}, {0x78, 0xb4, 0xc3},
+       {0x5a, 0x96, 0x0f}, {0xb4, 0x78, 0xe1}, {0xf0, 0xc3, 0x87}, {0x00, 0xe1, 0xd2}, {0x3c, 0xc3, 0x87},
+       {0xc3, 0xd2, 0xff}}};
+  constexpr int64_t kStep = 13;
+  const int64_t robot = number(label) / 10000, topic = number(label) % 10000;
+  return kColors[static_cast<size_t>(std::abs(topic + kStep * robot)) % kColors.size()];
 }
 
 // Okabe and Ito's, then Tol's muted ones.

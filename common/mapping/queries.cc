@@ -31,6 +31,7 @@ Json toJson(const NodeStatus& n) {
           {"topics", n.topics},
           {"cells", n.cells},
           {"bytes_sent", n.bytes_sent},
+          {"class_bytes", n.class_bytes},
           {"budget", n.budget},
           {"queue_bytes", n.queue_bytes},
           {"clear_s", rounded(n.clearSeconds(), 1e1)},
@@ -76,6 +77,7 @@ NodeStatus nodeFromJson(const Json& json) {
   n.heard_share = number("heard_share");
   n.depth_m = number("depth_m");
   if (const auto percent = number("battery_percent")) n.battery_percent = static_cast<int>(*percent);
+  if (const auto classes = json.find("class_bytes"); classes != json.end()) classes->get_to(n.class_bytes);
   return n;
 }
 

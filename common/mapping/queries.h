@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -46,6 +47,8 @@ struct NodeStatus {
   /// Its map beside that of who answers: "same"; "behind" when it was made from another state; "other" when
   /// the states are equal and the maps are not, which is an alarm; "none" when it does not fuse.
   std::string agreement = "none";
+  /// `bytes_sent` by class of traffic; "repair" is what was asked for and said again. Empty: it is not known.
+  std::map<std::string, int64_t> class_bytes = {};
 };
 
 /// Somebody who speaks on the mission's channels without its key.

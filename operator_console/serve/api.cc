@@ -53,14 +53,30 @@ double number(const std::string& value, const char* key) {
 
 double number(const HttpRequest& request, const char* key) { return number(text(request, key), key); }
 
+int64_t wholeNumber(const HttpRequest& request, const char* key) {
+  const double value = number(request, key);
+  if (value != std::floor(value) || !(std::abs(value) < 1e9)) {
+    throw std::invalid_argument(std::string("\"") + key + "\" is a whole number");
+  }
+  return static_cast<int64_t>(value);
+}
+
 }  // namespace
 
 Api::Api(Where where, MissionFeed& feed, TruthLayer& truth, Gate gate, uint64_t life)
-    : where_(std::move(where)), feed_(feed), truth_(truth), gate_(std::move(gate)), life_(life) {}
+    : where_(std::move(where)),
+      feed_(feed),
+      truth_(truth),
+      held_(where_, feed),
+      gate_(std::move(gate)),
+      life_(life) {}
 
-// Of the mission time "at", or the newest; nullptr before the first.
+// Of the mission time "at", or the newest; as "node" held it, when one is named; nullptr before the first.
 std::shared_ptr<const Moment> Api::momentFor(const HttpRequest& request) const {
   const std::string* time = find(request, "at");
+  if (const std::string* node = find(request, "node"); node != nullptr) {
+    return held_.of(*node, time == nullptr ? std::nullopt : std::optional(number(*time, "at"))).moment;
+  }
   return time == nullptr ? feed_.now() : feed_.at(number(*time, "at"));
 }
 
@@ -75,8 +91,9 @@ HttpResponse Api::answer(const HttpRequest& request) {
   if (const std::string refusal = gate_.refusal(request); !refusal.empty()) return error(403, refusal);
   try {
     if (request.method == "GET" || request.method == "HEAD") return get(request);
-    if (request.method == "POST" && request.path == "/api/edit") return edit(request);
-    return error(405, "GET everything, POST /api/edit");
+    if (request.method == "POST" && (request.path == "/api/edit" || request.path == "/api/ask"))
+      return order(request);
+    return error(405, "GET everything, POST /api/edit and /api/ask");
   } catch (const std::invalid_argument& problem) {
     return error(400, problem.what());
   } catch (const std::runtime_error& problem) {
@@ -119,7 +136,8 @@ HttpResponse Api::get(const HttpRequest& request) {
     if (!moment) return error(503, "nothing is known of the mission yet");
     if (path == "/api/status") return json(moment->status);
     Json labels = moment->labels;
-    if (time == nullptr && where_.node.empty()) addPictures(where_, labels.at("labels"));
+    if (time == nullptr && find(request, "node") == nullptr && where_.node.empty())
+      addPictures(where_, labels.at("labels"));
     return json(labels);
   }
   if (path == "/api/tracks" || path == "/api/traffic" || path == "/api/events") {
@@ -130,6 +148,8 @@ HttpResponse Api::get(const HttpRequest& request) {
   }
   if (path == "/api/area") return area(request);
   if (path == "/api/why") return asked({{"query", "why"}, {"label", text(request, "label")}});
+  if (path == "/api/ask") return price(request);
+  if (path == "/api/holding") return holding(request);
   if (path == "/api/node") return asked({{"query", "node"}, {"node", text(request, "node")}});
   if (path == "/api/surprises") {
     Json question{{"query", "surprises"}};
@@ -222,8 +242,8 @@ HttpResponse Api::map(const HttpRequest& request) const {
   if (!moment) return error(503, "nothing is known of the mission yet");
   uint64_t since = 0;
   const std::string* life = find(request, "life");
-  if (time == nullptr && life != nullptr && *life == std::to_string(life_) &&
-      find(request, "since") != nullptr) {
+  if (time == nullptr && find(request, "node") == nullptr && life != nullptr &&
+      *life == std::to_string(life_) && find(request, "since") != nullptr) {
     const double asked = number(request, "since");
     if (asked >= static_cast<double>(moment->chain) && asked <= static_cast<double>(moment->sequence))
       since = static_cast<uint64_t>(asked);
@@ -267,11 +287,49 @@ HttpResponse Api::diff(const HttpRequest& request) const {
   return json(mapping::diffAnswer(viewAt(from_s), from_s, viewAt(until_s), until_s));
 }
 
-HttpResponse Api::edit(const HttpRequest& request) {
+// What a node held of the others, and until when.
+HttpResponse Api::holding(const HttpRequest& request) const {
+  const std::string* time = find(request, "at");
+  return json(
+      held_.of(text(request, "node"), time == nullptr ? std::nullopt : std::optional(number(*time, "at")))
+          .says);
+}
+
+// What a sharper picture would cost.
+HttpResponse Api::price(const HttpRequest& request) const {
+  Json question{{"query", "ask"}, {"dry_run", true}};
+  if (find(request, "label") != nullptr) {
+    question["label"] = text(request, "label");
+  } else {
+    question["robot"] = text(request, "robot");
+    question["topic"] = wholeNumber(request, "topic");
+  }
+  if (find(request, "example") != nullptr) question["example"] = wholeNumber(request, "example");
+  return sharper(question);
+}
+
+// Only a running node can pass a question on to a robot.
+HttpResponse Api::sharper(const Json& question) const {
+  if (where_.node.empty()) return error(404, "the mission is over: there is nobody to ask");
+  return asked(question);
+}
+
+// What only who has the token may do: decide, and spend bytes of the link.
+HttpResponse Api::order(const HttpRequest& request) {
   if (gate_.token.empty()) return error(403, "this console is read-only");
   if (!gate_.mayWrite(request))
     return error(401, "show the token that serve printed: Authorization: Bearer TOKEN");
-  const Json question = Json::parse(request.body, nullptr, false);
+  Json question = Json::parse(request.body, nullptr, false);
+  if (request.path == "/api/ask") {
+    if (!question.is_object()) {
+      throw std::invalid_argument(
+          R"(what is asked for is a JSON object: {"robot": "R03", "topic": 7, "example": 0})");
+    }
+    question["query"] = "ask";
+    question["dry_run"] = false;
+    question.erase("edit");
+    return sharper(question);
+  }
   if (!question.is_object() || !question.contains("edit")) {
     throw std::invalid_argument(
         R"(an edit is a JSON object: {"edit": "name", "label": "10004", "text": "sand"})");

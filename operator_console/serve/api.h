@@ -7,6 +7,7 @@
 
 #include "operator_console/mission_sources.h"
 #include "operator_console/serve/gate.h"
+#include "operator_console/serve/held_maps.h"
 #include "operator_console/serve/http_server.h"
 #include "operator_console/serve/mission_feed.h"
 #include "operator_console/serve/truth_layer.h"
@@ -38,11 +39,15 @@ class Api {
   HttpResponse asked(const nlohmann::ordered_json& question) const;
   HttpResponse area(const HttpRequest& request) const;
   HttpResponse diff(const HttpRequest& request) const;
-  HttpResponse edit(const HttpRequest& request);
+  HttpResponse holding(const HttpRequest& request) const;
+  HttpResponse price(const HttpRequest& request) const;
+  HttpResponse sharper(const nlohmann::ordered_json& question) const;
+  HttpResponse order(const HttpRequest& request);
 
   Where where_;
   MissionFeed& feed_;
   TruthLayer& truth_;
+  mutable HeldMaps held_;  // locks itself
   Gate gate_;
   uint64_t life_;
 };

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <set>
 
 namespace shoal::console {
 namespace {
@@ -27,7 +26,7 @@ void Chronicle::tell(double time_s, const std::string& kind, const std::string& 
   events_.push_back({time_s, kind, text});
 }
 
-void Chronicle::hear(const mapping::NodeStatus& node, const std::map<std::string, int64_t>& class_bytes) {
+void Chronicle::hear(const mapping::NodeStatus& node) {
   const bool is_new = !lives_.contains(node.name);
   Life& life = lives_[node.name];
   if (!is_new && node.heard_s <= life.heard_s && node.phase == life.phase && node.agreement == life.agreement)
@@ -54,7 +53,7 @@ void Chronicle::hear(const mapping::NodeStatus& node, const std::map<std::string
   life.heard_s = node.heard_s;
   if (node.phase != "node" && node.observation >= 0)
     follow(life, {node.heard_s, node.x_m, node.y_m, node.z_m});
-  std::map<std::string, int64_t> sent = class_bytes;
+  std::map<std::string, int64_t> sent = node.class_bytes;
   if (sent.empty()) sent["sent"] = node.bytes_sent;
   auto& bin = life.bins[static_cast<int64_t>(std::floor(node.heard_s / bin_s_))];
   for (const auto& [name, bytes] : sent) {
@@ -99,15 +98,21 @@ void Chronicle::hearLabels(double time_s, const Json& labels) {
   for (const Json& row : labels.at("labels")) {
     const int64_t label = row.at("label");
     const std::string name = row.at("name");
-    const auto known = labels_.find(label);
-    if (known == labels_.end()) {
-      tell(time_s, "label",
-           "label " + std::to_string(label) + (name.empty() ? "" : " \"" + name + "\"") + " appeared");
-    } else if (known->second != name) {
-      tell(time_s, "named",
-           "label " + std::to_string(label) + (name.empty() ? " has no name" : " is \"" + name + "\""));
-    }
-    labels_[label] = name;
+    if (!labels_.insert(label).second) continue;
+    tell(time_s, "label",
+         "label " + std::to_string(label) + (name.empty() ? "" : " \"" + name + "\"") + " appeared");
+  }
+}
+
+void Chronicle::hearEvents(const Json& events) {
+  static const std::set<std::string> kinds{"lost", "back", "twin", "mission", "edit"};  // the rest is ours
+  for (const Json& e : events.at("events")) {
+    const std::string kind = e.at("kind"), who = e.at("node"), says = e.at("says");
+    if (!kinds.contains(kind)) continue;
+    const bool is_named = kind == "edit" || kind == "mission";  // its sentence says who
+    const std::string text = is_named ? says : who + ": " + says;
+    if (heard_.size() <= kMaxEvents && heard_.emplace(e.at("at_s"), kind, text).second)
+      tell(e.at("at_s"), kind, text);
   }
 }
 

@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
@@ -17,13 +19,15 @@ namespace shoal::console {
 /// Bounded: tracks and traffic get coarser as they grow, events stop at a number and say so.
 class Chronicle {
  public:
-  /// A node as its last heartbeat told it.
-  /// @param class_bytes  what it has sent by class of traffic, when that is known; else all counts as "sent".
-  void hear(const mapping::NodeStatus& node, const std::map<std::string, int64_t>& class_bytes = {});
+  /// A node as its last heartbeat told it. Where classes of traffic are not known all counts as "sent".
+  void hear(const mapping::NodeStatus& node);
   /// Where a node that was heard has been, better known than from what it told; ascending by time.
   void track(const std::string& node, const std::vector<TrackPoint>& points);
-  /// The legend as it is at a time: new labels and new names are events.
+  /// The legend as it is at a time: new labels are events.
   void hearLabels(double time_s, const nlohmann::ordered_json& labels);
+  /// The answer to `events`: who was lost and came back, twins, other missions, and what operators decided.
+  /// What was told already is not told again.
+  void hearEvents(const nlohmann::ordered_json& events);
   /// Something else worth telling. @param kind  "joined", "landed", "label", "alarm", ...
   void tell(double time_s, const std::string& kind, const std::string& text);
 
@@ -54,8 +58,9 @@ class Chronicle {
   void coarsen();
 
   std::map<std::string, Life> lives_;
-  std::map<int64_t, std::string> labels_;
+  std::set<int64_t> labels_;
   std::vector<Event> events_;
+  std::set<std::tuple<double, std::string, std::string>> heard_;  // of hearEvents(): time, kind, what it says
   double bin_s_ = 1;
 };
 

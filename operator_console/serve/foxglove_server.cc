@@ -35,7 +35,8 @@ using asio::ip::tcp;
 using Json = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 
-constexpr const char* kSubprotocol = "foxglove.websocket.v1";
+// The newer name is of the same messages; clients offer one or both.
+constexpr std::array<const char*, 2> kSubprotocols = {"foxglove.websocket.v1", "foxglove.sdk.v1"};
 constexpr size_t kMaxSessions = 8, kMaxComplaints = 64, kMaxAsked = size_t{64} << 10;
 constexpr auto kLookEvery = std::chrono::milliseconds(200);
 constexpr auto kMapEvery = std::chrono::seconds(1);
@@ -194,13 +195,15 @@ class Session : public std::enable_shared_from_this<Session> {
     if (const std::string refusal = gate_.refusal(asked); !refusal.empty())
       return refuse(http::status::forbidden, refusal);
     const std::string wanted = header(http::field::sec_websocket_protocol);
-    if (!websocket::is_upgrade(request) || wanted.find(kSubprotocol) == std::string::npos)
+    const auto spoken = std::ranges::find_if(
+        kSubprotocols, [&wanted](const char* name) { return wanted.find(name) != std::string::npos; });
+    if (!websocket::is_upgrade(request) || spoken == kSubprotocols.end())
       return refuse(http::status::upgrade_required,
-                    std::string("this is a WebSocket of the subprotocol ") + kSubprotocol);
+                    std::string("this is a WebSocket of the subprotocol ") + kSubprotocols.front());
     beast::get_lowest_layer(ws_).expires_never();
     ws_.set_option(websocket::stream_base::timeout::suggested(beast::role_type::server));
-    ws_.set_option(websocket::stream_base::decorator([](websocket::response_type& response) {
-      response.set(http::field::sec_websocket_protocol, kSubprotocol);
+    ws_.set_option(websocket::stream_base::decorator([name = *spoken](websocket::response_type& response) {
+      response.set(http::field::sec_websocket_protocol, name);
     }));
     ws_.read_message_max(kMaxAsked);
     ws_.async_accept(request, [self = shared_from_this()](beast::error_code error) {

@@ -27,6 +27,7 @@ using Clock = std::chrono::steady_clock;
 constexpr auto kAskEvery = std::chrono::milliseconds(50);
 constexpr int kLeisure = 4;  // a map is asked for again after 4 times what it took: nodes have other work
 constexpr auto kPicturesEvery = std::chrono::seconds(2);
+constexpr auto kEventsEvery = std::chrono::seconds(1);
 constexpr size_t kMaxMoments = 64;      // of a live mission
 constexpr size_t kHistoryMoments = 32;  // of a recording
 constexpr size_t kMostPictures = 64;    // of a label
@@ -35,14 +36,6 @@ double timeOf(const mapping::MissionView& view) {
   double time_s = 0;
   for (const mapping::NodeStatus& node : view.nodes) time_s = std::max(time_s, node.heard_s);
   return time_s;
-}
-
-Json colored(Json answer) {
-  for (Json& row : answer["labels"]) {
-    const Rgb c = colorOf(world::GlobalLabel{row["label"].get<int32_t>()});
-    row["color"] = fmt::format("#{:02x}{:02x}{:02x}", c[0], c[1], c[2]);
-  }
-  return answer;
 }
 
 // First and last mission time of the heartbeats of a recording.
@@ -68,6 +61,14 @@ std::string recordingOrNone(const Where& where) {
 }
 
 }  // namespace
+
+Json colored(Json answer) {
+  for (Json& row : answer["labels"]) {
+    const Rgb c = colorOf(world::GlobalLabel{row["label"].get<int32_t>()});
+    row["color"] = fmt::format("#{:02x}{:02x}{:02x}", c[0], c[1], c[2]);
+  }
+  return answer;
+}
 
 MissionFeed::MissionFeed(Where where, OnChange on_change)
     : where_(std::move(where)), on_change_(std::move(on_change)), thread_([this] { run(); }) {}
@@ -209,7 +210,7 @@ void MissionFeed::run() {
 // Until it is lost: throws then.
 void MissionFeed::watchNode() {
   looked_at_ = pictured_ = "";
-  next_map_ = next_pictures_ = {};
+  next_map_ = next_pictures_ = next_events_ = {};
   for (;;) {
     {
       std::unique_lock lock(mutex_);
@@ -227,6 +228,12 @@ void MissionFeed::watchNode() {
         time_s = std::max(time_s, node.heard_s);
         chronicle_.hear(node);
       }
+    }
+    if (Clock::now() >= next_events_) {
+      const Json events = fusion_node::askNode(where_.node, {{"query", "events"}});
+      next_events_ = Clock::now() + kEventsEvery;
+      const std::lock_guard lock(mutex_);
+      chronicle_.hearEvents(events);
     }
     lookAtNode(status, time_s);
   }
@@ -302,7 +309,15 @@ void MissionFeed::lookAtFiles() {
     }
     on_change_();
   }
-  if (recordingOrNone(where_).empty()) return setPhase("whole");
+  if (recordingOrNone(where_).empty()) {
+    const Json events = ask(where_, {{"query", "events"}});
+    {
+      const std::lock_guard lock(mutex_);
+      chronicle_.hearEvents(events);
+    }
+    on_change_();
+    return setPhase("whole");
+  }
   readHistory();
   setPhase("whole");
 }
@@ -337,19 +352,16 @@ void MissionFeed::readHistory() {
     if (std::exchange(is_first, false)) edits = mapping::readEdits(editsPathOf(where_), header.mission);
     if (header.kind != wire::MessageKind::kHeartbeat) return;
     const wire::Heartbeat& heartbeat = state.heartbeats().at(channel.node);
-    std::map<std::string, int64_t> sent;
-    for (size_t i = 0; i < wire::Heartbeat::kNumClasses && i < comms::kNumTrafficClasses; ++i) {
-      if (comms::TrafficClass{static_cast<uint8_t>(i)} == comms::TrafficClass::kLocal)
-        continue;  // not on the link
-      sent[std::string(comms::kTrafficClassNames[i])] = heartbeat.class_bytes[i];
-    }
-    chronicle.hear(fusion_node::statusOf(channel.node, heartbeat, false, {}), sent);
+    chronicle.hear(fusion_node::statusOf(channel.node, heartbeat, false, {}));
     if (header.time.seconds() < due_s || header.time.seconds() >= last_s) return;
     keep(state, header.time.seconds());
     due_s = header.time.seconds() + step_s;
   };
   const RecordedMission recorded = readRecording(path, matcher, on_message, {}, where_.key);
   keep(recorded.state, last_s);
+  fusion_node::MissionState decided = recorded.state;
+  for (const mapping::Edit& edit : edits) decided.apply(mapping::pieceOf(edit));
+  chronicle.hearEvents(mapping::eventsAnswer(decided.overview(), decided.beliefs(), decided.events()));
   {
     const std::lock_guard lock(mutex_);
     moments_ = std::move(moments);

@@ -35,6 +35,9 @@ struct Moment {
   uint64_t pictures_sequence = 0;  ///< of the map with which they became what they are
 };
 
+/// The legend as an answer, each row with the colour of global_map.png.
+nlohmann::ordered_json colored(nlohmann::ordered_json answer);
+
 /// Keeps looking at a mission from a thread of its own: asks a running node, or reads files once and again
 /// when something was decided. Pages read what it has found, and never make a node work.
 class MissionFeed {
@@ -87,7 +90,7 @@ class MissionFeed {
   Chronicle chronicle_;
   NodeMap node_map_;                  // of the feed's thread, as what follows
   std::string looked_at_, pictured_;  // what the node said it had when its map, its pictures were asked for
-  std::chrono::steady_clock::time_point next_map_, next_pictures_;
+  std::chrono::steady_clock::time_point next_map_, next_pictures_, next_events_;
   std::thread thread_;
 };
 

@@ -64,11 +64,28 @@ try {
   await until(async () => (await text("#robots")).includes("flying"), "robots fly");
   await until(async () => (await cells()) > some && (await cells(other)) > some, "the map grows on both pages");
   await shot("flying");
+  // The price of a sharper picture is said before anybody asks for it; who has no key may know it.
+  await until(async () => (await page.locator("#legend img.example").count()) > 0, "a picture has come");
+  for (const on of [page, other]) {
+    await on.locator("#legend .label", { has: on.locator("img.example") }).first().click();
+    await on.locator("#inspector .look").first().click();
+    await until(async () => /costs at most [\d.]+ kB on the link|nothing to pay/.test(await text("#inspector .price", on)), "the price is said");
+  }
+  assert.equal(await other.locator(".pay").count(), 0, "who has no key asks for nothing");
+  if (await page.locator(".pay").count() > 0) {
+    await page.locator(".pay").click();
+    await until(async () => /Asked|has come/.test(await text("#inspector .price")), "it is asked for");
+  }
+  await shot("price");
+  for (const on of [page, other]) await on.keyboard.press("Escape");
   for (const robot of robots) assert.equal(await robot.gone, 0, "a robot came home");
   await until(async () => ((await text("#robots")).match(/landed/g) ?? []).length === 3, "all have landed");
   const whole = (await command("status", "--node", state, "--json")).cells;
   await until(async () => (await cells()) === whole && (await cells(other)) === whole, "both pages have the whole map");
   await until(async () => (await page.locator("#legend img.example").count()) > 1, "pictures have come");
+
+  // Bytes by class of traffic.
+  assert.match(await text("#linkkey"), /bricks[^]*heartbeat[^]*topics/);
 
   // A name given here is on the other page, and with the node.
   await page.locator("#legend .label .name").first().dblclick();

@@ -11,6 +11,11 @@ const page = await browser.newPage({ viewport: { width: 1400, height: 860 } });
 const problems = [];
 page.on("pageerror", (error) => problems.push(String(error)));
 page.on("request", (request) => { if (!request.url().startsWith(new URL(url).origin) && !request.url().startsWith("data:")) problems.push("asks " + request.url()); });
+const asked = new Map(); // all that the page asks: method and path, with the parameters it ever gave
+page.on("request", (request) => {
+  const { pathname, searchParams } = new URL(request.url()), key = `${request.method().toLowerCase()} ${pathname}`;
+  if (pathname.startsWith("/api/")) asked.set(key, new Set([...asked.get(key) ?? [], ...searchParams.keys()]));
+});
 const shot = (name) => (folder ? page.screenshot({ path: `${folder}/${name}.png` }) : undefined);
 const text = (selector) => page.locator(selector).innerText();
 const cells = async () => Number((await text("#counts")).split(" ")[0].replace(/,/g, ""));
@@ -52,6 +57,12 @@ try {
   const loaded = (where) => page.evaluate((w) => [...document.querySelectorAll(w + " img.example")].map((i) => i.complete ? i.naturalWidth : 0), where);
   await until(async () => (await loaded("#legend")).every((width) => width === 32), "the legend's pictures come");
   await until(async () => { const widths = await loaded("#inspector .face"); return widths.length > 0 && widths.every((w) => w === 32); }, "the evidence has pictures");
+
+  // A picture closer; of a mission that is over nothing can be asked for.
+  await page.locator("#inspector .look").first().click();
+  assert.match(await text("#inspector .closer"), /As R0\d saw its topic \d+ at [^]*over/);
+  await page.locator("#inspector .look").first().click();
+  assert.equal(await page.locator("#inspector .closer").count(), 0);
 
   // A name, and back.
   await page.keyboard.press("n");
@@ -189,6 +200,83 @@ try {
   if (folder) await marked.screenshot({ path: `${folder}/library.png` });
   await marked.close();
 
+  // Without a mouse: the map's middle, a label, what its robots are, the list of keys.
+  const bare = await (await browser.newContext({ viewport: { width: 1400, height: 860 } })).newPage();
+  await bare.goto(url);
+  await bare.waitForSelector("#legend .label");
+  await until(async () => bare.evaluate(() => !window.shoal.map.isEmpty), "the map is there");
+  const focused = () => bare.evaluate(() => { const e = document.activeElement; return e.id || e.dataset.key || e.dataset.layer || e.className || e.tagName; });
+  const reached = new Set();
+  const tabTo = async (wanted) => {
+    for (let i = 0; i < 120; ++i) {
+      await bare.keyboard.press("Tab");
+      const now = await focused();
+      reached.add(now);
+      const line = await bare.evaluate(() => { const style = getComputedStyle(document.activeElement); return style.outlineStyle !== "none" && parseFloat(style.outlineWidth) > 0 && style.opacity === "1"; });
+      assert.ok(line || now === "BODY", "who has the focus shows it: " + now);
+      if (wanted(now)) return;
+    }
+    assert.fail("Tab comes to it; it came to " + [...reached].join(", "));
+  };
+  await tabTo((now) => now === "map");
+  await until(() => bare.evaluate(() => { // there is something under the cross
+    const { map } = window.shoal;
+    if (map.cellAt(...map.toWorld(...map.cross()))) return true;
+    map.pan(7, 5);
+    return false;
+  }), "a cell under the cross");
+  await bare.keyboard.press("Enter");
+  await bare.waitForSelector("#inspector .why table");
+  await bare.keyboard.press("Escape");
+  assert.ok(await bare.locator("#inspector").isHidden());
+  await tabTo((now) => now.startsWith("label "));
+  const row = await focused();
+  await bare.keyboard.press("Enter");
+  await bare.waitForSelector("#inspector .why table");
+  assert.equal(await focused(), row, "the focus stays where it was while rows are made anew");
+  await tabTo((now) => now === "exclude R00");
+  await tabTo((now) => now === "R01");
+  await bare.keyboard.press("Space");
+  assert.match(bare.url(), /robot=1/);
+  await tabTo((now) => now === "time");
+  await bare.keyboard.press("?");
+  const keys = await bare.locator("#keys").innerText();
+  for (const key of ["arrows", "Tab", "Enter", "1 … 7", "[ ] space", "Esc"]) assert.ok(keys.includes(key), key + " is in the list: " + keys);
+  for (const key of ["d", "n", "l", "u", "e", "c", "?"]) assert.ok((await bare.locator("#keys kbd").allInnerTexts()).includes(key), key + " is in the list");
+  await bare.keyboard.press("Escape");
+  await bare.close();
+
+  // Nothing lies over anything that can be pressed, on a desk, a small laptop and a telephone.
+  for (const [width, height] of [[1400, 860], [1024, 700], [390, 844]]) {
+    const small = await (await browser.newContext({ viewport: { width, height } })).newPage();
+    await small.goto(url);
+    await small.waitForSelector("#legend .label");
+    await small.locator("#layers [data-layer=surprise]").click();
+    await small.waitForTimeout(200);
+    const hidden = await small.evaluate(() => [...document.querySelectorAll("header button, #layers button, #toggles button, #toggles input, #ramp, footer button, footer input")].filter((e) => {
+      const box = e.getBoundingClientRect();
+      if (box.width === 0) return false;
+      return box.left < 0 || box.right > innerWidth || box.bottom > innerHeight || !e.contains(document.elementFromPoint((box.left + box.right) / 2, (box.top + box.bottom) / 2));
+    }).map((e) => e.id || e.dataset.layer));
+    assert.deepEqual(hidden, [], `at ${width} x ${height}`);
+    assert.ok(await small.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `at ${width} x ${height} nothing sticks out`);
+    if (folder) await small.screenshot({ path: `${folder}/size_${width}.png` });
+    await small.close();
+  }
+
+  // The map as one robot holds it, and a link to that.
+  await page.locator("#holders").selectOption("R01");
+  await until(async () => (await text("#phase")) === "as R01 held it" && (await cells()) < all, "the map as R01 held it");
+  assert.match(await text("#holding"), /R01 fuses nothing: it holds its own/);
+  assert.ok(await page.locator("#undo").isHidden(), "nothing is decided there");
+  await shot("held");
+  const theirs = await (await browser.newContext()).newPage();
+  await theirs.goto(page.url());
+  await until(async () => (await theirs.locator("#phase").innerText()) === "as R01 held it", "the link tells whose map it is");
+  await theirs.close();
+  await page.locator("#holders").selectOption("");
+  await until(async () => (await cells()) === all, "all of it again");
+
   // It survives a reload, with its key.
   await page.reload();
   await page.waitForSelector("#legend .label");
@@ -197,6 +285,15 @@ try {
   await page.keyboard.press("0");
   await page.waitForTimeout(300);
   await shot("whole");
+  // What the page asks is what the description says that there is.
+  const { paths } = await (await fetch(new URL("/openapi.json", url))).json();
+  assert.ok(asked.size > 10, "the page asks: " + [...asked.keys()].join(", "));
+  for (const [key, given] of asked) {
+    const [method, path] = key.split(" "), said = paths[path]?.[method];
+    assert.ok(said, "described: " + key);
+    const known = [...(said.parameters ?? []).map((p) => p.name), ...(path === "/api/picture" ? ["v"] : [])]; // v: which one, for the browser's store
+    for (const name of given) assert.ok(known.includes(name), `described: ${name} of ${key}`);
+  }
   assert.deepEqual(problems, []);
   console.log("the page works");
 } catch (error) {

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "operator_console/render.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include <gtest/gtest.h>
+#include <Eigen/Core>
 
 namespace shoal::console {
 namespace {
@@ -22,6 +26,43 @@ bool has(const cv::Mat& picture, const Rgb& color) {
 TEST(ColorOfTest, IsTheLabelsOwn) {
   EXPECT_EQ(colorOf(GlobalLabel{30007}), colorOf(GlobalLabel{30007}));
   EXPECT_NE(colorOf(GlobalLabel{30007}), colorOf(GlobalLabel{30008}));
+}
+
+// CIE L*a*b* under D65 of linear light in sRGB's primaries.
+Eigen::Vector3d labOf(const Eigen::Vector3d& light) {
+  Eigen::Matrix3d xyz_from_rgb;
+  xyz_from_rgb << .4124564, .3575761, .1804375, .2126729, .7151522, .0721750, .0193339, .1191920, .9503041;
+  const Eigen::Vector3d xyz =
+      (xyz_from_rgb * light.cwiseMax(0).cwiseMin(1)).cwiseQuotient(Eigen::Vector3d(.95047, 1, 1.08883));
+  const Eigen::Vector3d f =
+      xyz.unaryExpr([](double t) { return t > .008856 ? std::cbrt(t) : 7.787 * t + 16. / 116; });
+  return {116 * f.y() - 16, 500 * (f.x() - f.y()), 200 * (f.y() - f.z())};
+}
+
+Eigen::Vector3d lightOf(const Rgb& color) {
+  Eigen::Vector3d light;
+  for (int i = 0; i < 3; ++i) {
+    const double c = color[static_cast<size_t>(i)] / 255.;
+    light[i] = c <= .04045 ? c / 12.92 : std::pow((c + .055) / 1.055, 2.4);
+  }
+  return light;
+}
+
+// Dichromats' sight, after Machado et al. 2009, table 1. Nine is told apart at a glance, two just so side by
+// side.
+TEST(ColorOfTest, NoEyeTakesATopicOfARobotForAnother) {
+  Eigen::Matrix3d protan, deutan;
+  protan << .152286, 1.052583, -.204868, .114503, .786281, .099216, -.003882, -.048116, 1.051998;
+  deutan << .367322, .860646, -.227968, .280085, .672501, .047413, -.011820, .042940, .968881;
+  for (const Eigen::Matrix3d& eye : {Eigen::Matrix3d(Eigen::Matrix3d::Identity()), protan, deutan})
+    for (int robot : {0, 3, 11})
+      for (int a = 0; a < 36; ++a)
+        for (int b = 0; b < a; ++b) {
+          const auto seen = [&](int topic) {
+            return labOf(eye * lightOf(colorOf(GlobalLabel{robot * 10000 + topic})));
+          };
+          EXPECT_GT((seen(a) - seen(b)).norm(), 9) << robot << ": " << a << ", " << b;
+        }
 }
 
 TEST(RenderTest, NorthIsUpAndTheHighestCellShows) {

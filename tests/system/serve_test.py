@@ -295,6 +295,39 @@ class Serve(unittest.TestCase):
             if needed:
                 self.assertEqual(self.server.ask(path)[0].status, 400, path)
 
+    def test_the_map_as_a_node_holds_it(self):
+        with open(os.path.join(DOCS, "openapi.json"), encoding="utf-8") as file:
+            said = json.load(file)["paths"]["/api/holding"]["get"]["responses"]["200"]["content"]["application/json"]["schema"]
+        # A robot that fuses nothing holds its own, whoever saw those cells later.
+        alone, header = tiles(self.server.ask("/api/map?node=R01")[1])
+        size, own = header["cell_size"], set()
+        with open(os.path.join(self.run_dir, "robots", "R01", "map.csv"), encoding="utf-8") as file:
+            for row in file.readlines()[1:]:
+                x, y = row.split(",")[:2]
+                own.add((round(float(x) / size), round(float(y) / size)))
+        self.assertEqual(set(alone), own)
+        self.assertEqual({robot for _, robot in alone.values()}, {1})
+        held = self.server.json("/api/holding?node=R01")
+        jsonschema.validate(held, said)
+        self.assertEqual((held["fuses"], [s["robot"] for s in held["shares"]]), (False, ["R01"]))
+        # The operator's, while it grew: what its roster names adds up to the digest of the map that it had.
+        counts, agreed = [], 0
+        for t in self.server.settled()["times_s"]:
+            held = self.server.json(f"/api/holding?node=OPERATOR&at={t}")
+            jsonschema.validate(held, said)
+            self.assertLessEqual(held["at_s"], t)
+            self.assertIsNot(held["agrees"], False, held)
+            agreed += held["agrees"] is True
+            counts.append(len(tiles(self.server.ask(f"/api/map?node=OPERATOR&at={t}")[1])[0]))
+        self.assertEqual(counts, sorted(counts))
+        self.assertGreater(agreed, 1)
+        self.assertIs(held["agrees"], True)
+        self.assertTrue(all(s["whole"] and s["certain"] for s in held["shares"]), held)
+        self.assertEqual(tiles(self.server.ask("/api/map?node=OPERATOR")[1])[0], tiles(self.server.ask("/api/map")[1])[0])
+        for name in ("labels", "status"):
+            jsonschema.validate(self.server.json(f"/api/{name}?node=R01"), schema(name))
+        self.assertIn("OPERATOR R00 R01", self.server.json("/api/map?node=R07", 404)["error"])
+
     def test_exports_are_those_of_the_command(self):
         mission = self.server.json("/api/mission")
         self.assertEqual([e["format"] for e in mission["exports"]], mission["formats"])
@@ -313,6 +346,7 @@ class Serve(unittest.TestCase):
             with zipfile.ZipFile(io.BytesIO(self.server.ask(path + "&packed=zip")[1])) as archive:
                 self.assertIsNone(archive.testzip())
                 self.assertEqual({name: archive.read(name) for name in archive.namelist()}, expected, export)
+        self.assertIn("over", self.server.json("/api/ask?label=1", 404)["error"])  # nobody is there to be asked
         for wrong in ("format=kml", "format=ply&latitude=1&longitude=2", "format=geotiff&latitude=1", "format=geotiff&heading=3",
                       "format=geotiff&latitude=99&longitude=0", "format=geotiff&packed=tar", "format=shp"):
             self.assertEqual(self.server.ask("/api/export?" + wrong)[0].status, 400, wrong)
@@ -354,6 +388,9 @@ class Serve(unittest.TestCase):
     def test_foxglove_looks_at_the_same_mission(self):
         cells, header = tiles(self.server.ask("/api/map?cells=all")[1])
         colors = {row["label"]: bytes.fromhex(row["color"][1:]) for row in self.server.json("/api/labels")["labels"]}
+        for offered, spoken in (("foxglove.sdk.v1", "foxglove.sdk.v1"), ("foxglove.sdk.v1, foxglove.websocket.v1", "foxglove.websocket.v1")):
+            with WebSocket(self.server.foxglove, subprotocol=offered) as client:
+                self.assertEqual((client.status, client.headers["sec-websocket-protocol"]), (101, spoken))
         with WebSocket(self.server.foxglove) as client:
             self.assertEqual((client.status, client.headers["sec-websocket-protocol"]), (101, "foxglove.websocket.v1"))
             info, offer = client.said(), client.said()
@@ -587,6 +624,22 @@ class Live(unittest.TestCase):
                     self.assertGreater(len(cells), 50)
                     key = {"Authorization": "Bearer " + server.token}
                     label = server.json("/api/labels")["labels"][0]["label"]
+                    self.assertLess({"bricks", "heartbeat", "topics"}, set(server.json("/api/traffic")["classes"]))
+                    # What a sharper picture costs, before it is asked for; asking takes the key.
+                    while not server.json("/api/pictures")["labels"]:
+                        time.sleep(0.1)
+                    picture = next(p for row in server.json("/api/pictures")["labels"] for p in row["pictures"])
+                    wish = {name: picture[name] for name in ("robot", "topic", "example")}
+                    price = server.json("/api/ask?" + urllib.parse.urlencode(wish))
+                    jsonschema.validate(price, schema("ask"))
+                    told = json.loads(command("ask", wish["robot"], "example", str(wish["topic"]), "--number", str(wish["example"]), "--node", state,
+                                              "--dry-run", "--json"))
+                    self.assertEqual((price["bytes"], price["state"]), (told["bytes"], told["state"]))
+                    self.assertEqual(server.ask("/api/ask", "POST", json.dumps(wish))[0].status, 401)
+                    for wrong in ("", "robot=R00", "robot=R00&topic=1.5", "robot=R00&topic=99999999999", "label=nothing", "robot=R99&topic=0"):
+                        self.assertEqual(server.ask("/api/ask?" + wrong)[0].status, 400, wrong)
+                    for wrong in ("[]", "7", "{", "{}", '{"robot": 7, "topic": "x"}', '{"robot": "R00", "topic": 1e99}'):
+                        self.assertEqual(server.ask("/api/ask", "POST", wrong, key)[0].status, 400, wrong)
                     edit = json.dumps({"edit": "name", "label": str(label), "text": "sand"})
                     self.assertEqual(server.ask("/api/edit", "POST", edit, key)[0].status, 200)
                     for _ in range(100):
@@ -601,6 +654,7 @@ class Live(unittest.TestCase):
                         cells, _ = tiles(server.ask("/api/map")[1])
                     node.send_signal(signal.SIGINT)
                     node.wait(timeout=20)
+                    self.assertTrue(any(e["kind"] == "edit" and '"sand"' in e["text"] for e in server.json("/api/events")["events"]))
                     self.assertRegex(server.settled("lost")["problem"], "no running node|did not answer")
                     kept, header = tiles(server.ask("/api/map?cells=all")[1])
                     self.assertEqual(kept, cells)  # what was known is still shown

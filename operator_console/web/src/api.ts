@@ -27,6 +27,11 @@ export interface Why {
   shared_words: { first: number; size: number; words: { word: number; share: number; members: number }[] }[];
 }
 export interface Picture { robot: string; topic: number; example: number; seen_s: number; layers: number; num_layers: number }
+export interface Price {
+  robot: string; topic: number; example: number; state: "sharp" | "not sharp" | "asked";
+  bytes: { request: number; answer: number }; seconds: number | null; heard_ago_s: number | null;
+}
+export interface Holding { node: string; at_s: number; fuses: boolean; agrees: boolean | null; shares: { robot: string; whole: boolean; certain: boolean; until_s: number }[] }
 export interface Place { x_m: number; y_m: number; z_m: number; surprise: number; label: number; name: string; area_m2: number; robots: string[]; first_seen_s: number; last_seen_s: number }
 export interface TruthClass { id: number; name: string; color: string }
 export interface CellHistory {
@@ -58,13 +63,16 @@ export async function askBytes(path: string): Promise<ArrayBuffer> {
   return response.arrayBuffer();
 }
 
-export async function decide(edit: Record<string, string>): Promise<{ id: string; says: string }> {
-  const response = await fetch("/api/edit", {
-    method: "POST", body: JSON.stringify(edit),
+export const decide = (edit: Record<string, string>): Promise<{ id: string; says: string }> => order("/api/edit", edit);
+export const askSharper = (picture: { robot: string; topic: number; example: number }): Promise<Price> => order("/api/ask", picture);
+
+async function order<T>(path: string, what: unknown): Promise<T> {
+  const response = await fetch(path, {
+    method: "POST", body: JSON.stringify(what),
     headers: { Authorization: "Bearer " + (sessionStorage.getItem("token") ?? ""), "Content-Type": "application/json" },
   });
   const answer = await response.json();
   if (response.status === 401) throw new Error("Open the URL that serve printed: this page has no key to change things.");
   if (!response.ok) throw new Error(answer.error ?? response.statusText);
-  return answer;
+  return answer as T;
 }

@@ -14,6 +14,19 @@ export function el(tag: string, attributes: Record<string, string | ((event: Eve
   return element;
 }
 
+// What a row needs to be pressed by mouse and by key.
+export const pressable = (act: () => void): Record<string, string | ((event: Event) => void)> => ({
+  tabindex: "0", role: "button", click: act,
+  keydown: (e) => { if (["Enter", " "].includes((e as KeyboardEvent).key) && e.target === e.currentTarget) { e.preventDefault(); e.stopPropagation(); act(); } },
+});
+
+// Fills a box anew; what had the focus in it has it again: rows and their buttons are known by data-key.
+export function refill(box: HTMLElement, ...children: HTMLElement[]): void {
+  const key = box.contains(document.activeElement) ? (document.activeElement as HTMLElement).dataset.key : undefined;
+  box.replaceChildren(...children);
+  if (key !== undefined) box.querySelector<HTMLElement>(`[data-key="${CSS.escape(key)}"]`)?.focus({ preventScroll: true });
+}
+
 export const seconds = (s: number): string => {
   if (s >= 1e8) return new Date(s * 1000).toISOString().slice(11, 19);
   const whole = Math.floor(s), m = Math.floor(whole / 60) % 60, h = Math.floor(whole / 3600);

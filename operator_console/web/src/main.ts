@@ -1,17 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import { ask, askBytes, decide, hasToken, takeToken } from "./api";
-import type { CellHistory, Happening, Label, Mission, Node, Picture, Place, Status, Track, Traffic, TruthClass, Why } from "./api";
+import type { CellHistory, Happening, Holding, Label, Mission, Node, Picture, Place, Status, Track, Traffic, TruthClass, Why } from "./api";
 import { alarmCss, classColor, LEAST_SURPRISE, MOST_SURPRISE, rampCss, robotColor, USUAL } from "./colors";
-import { area, byId, el, seconds } from "./dom";
+import { area, byId, el, pressable, refill, seconds } from "./dom";
 import { openExports } from "./exports";
 import { drawLink, rateText } from "./link_plot";
 import { isSilent, LAYERS, MapView, type Cell, type Layer } from "./map_view";
 import { Pictures } from "./pictures";
+import { closer } from "./sharper";
+import { Pinch } from "./pinch";
 import { decodeTiles } from "./tiles";
 import type { View3D } from "./view3d";
 
 takeToken();
 const map = new MapView(byId<HTMLCanvasElement>("map"));
+let held: string | null = null; // the node whose map is looked at; null: all that was heard
+const isNow = (): boolean => past === null && held === null;
+// What is looked at, for questions that know of moments and of nodes.
+const view = (first = "?"): string => {
+  const parts = [...(past === null ? [] : [`at=${past}`]), ...(held === null ? [] : [`node=${encodeURIComponent(held)}`])];
+  return parts.length ? first + parts.join("&") : "";
+};
 let mission: Mission | null = null, status: Status | null = null;
 let labels: Label[] = [], traffic: Traffic | null = null, events: Happening[] = [];
 let past: number | null = null; // mission time that is looked at; null: the newest
@@ -29,7 +38,7 @@ const LAYER_TEXT: Record<Layer, string> = { label: "Label", certainty: "Certaint
 const LIBRARY = "R9999"; // tells what missions before have named
 const nameOf = (label: number): string => labels.find((l) => l.label === label)?.name || String(label);
 const colorOf = (label: number): string => labels.find((l) => l.label === label)?.color ?? "#999";
-const mayWrite = (): boolean => mission !== null && !mission.read_only && hasToken();
+const mayWrite = (): boolean => held === null && mission !== null && !mission.read_only && hasToken();
 
 // ---------- what is fetched
 
@@ -40,17 +49,18 @@ let fetching = false, again: What | null = null, nextAll = 0, allLater = 0;
 async function refresh(what: What = "all"): Promise<void> {
   if (fetching) { again = again === "all" ? "all" : what; return; }
   fetching = true;
-  if (past !== null || !mission || performance.now() >= nextAll) what = "all";
+  if (!isNow() || !mission || performance.now() >= nextAll) what = "all";
   try {
     if (what === "all") {
       clearTimeout(allLater); allLater = 0;
       nextAll = performance.now() + READ_MS;
       mission = await ask<Mission>("/api/mission");
     } else if (!allLater) allLater = window.setTimeout(() => { allLater = 0; void refresh(); }, Math.max(0, nextAll - performance.now()));
-    const at = past === null ? "" : `?at=${past}`;
+    const at = view(), shown = at;
     if (mission!.sequence > 0) {
       const begun = performance.now();
       const [bytes, newStatus] = await Promise.all([askMap(at), ask<Status>("/api/status" + at), what === "all" ? askToRead(at) : null]);
+      if (shown !== view()) return; // it has been turned to something else meanwhile
       status = newStatus;
       map.nodes = status.nodes; map.tracksUntil = past ?? Infinity;
       if (bytes) map.take(decodeTiles(bytes)); else map.draw();
@@ -58,12 +68,13 @@ async function refresh(what: What = "all"): Promise<void> {
       if (updates.length > 1000) updates.splice(0, 500);
       if (map.layer === "truth") void fetchTruth();
       if (map.layer === "surprise" && what === "all") void fetchStrangest();
-      if (past !== null) map.sequence = 0, map.life = ""; // the next newest map comes whole
+      if (!isNow()) map.sequence = 0, map.life = ""; // the next newest map comes whole
       if (!fitted && !map.isEmpty) { fitted = true; followed = !restoreView(); }
       if (followed && !map.isEmpty) fitAll();
     }
     if (what === "all") show(); else { showCounts(); showTime(); }
   } catch (problem) {
+    if (held !== null && (problem as Error).message.startsWith("nothing was heard")) return toast((problem as Error).message);
     byId("phase").textContent = "no answer"; byId("phase").className = "bad";
     byId("phase").title = String(problem);
   } finally {
@@ -76,7 +87,7 @@ async function refresh(what: What = "all"): Promise<void> {
 
 // Null: the page has it already.
 async function askMap(at: string): Promise<ArrayBuffer | null> {
-  const knows = past === null && map.life === mission!.life && map.sequence > 0;
+  const knows = isNow() && map.life === mission!.life && map.sequence > 0;
   if (knows && map.sequence === mission!.sequence) return null;
   return askBytes("/api/map?cells=all" + at.replace("?", "&") + (knows ? `&since=${map.sequence}&life=${map.life}` : ""));
 }
@@ -88,14 +99,14 @@ async function askToRead(at: string): Promise<void> {
   labels = newLabels.labels.sort((a, b) => b.area_m2 - a.area_m2);
   map.tracks = tracks.tracks;
   map.setLabels(labels);
-  const pictured = past !== null ? at : `${mission!.life} ${mission!.pictures}`;
+  const pictured = !isNow() ? at : `${mission!.life} ${mission!.pictures}`;
   if (pictures.of !== pictured) pictures.take(pictured, (await ask<{ labels: { label: number; pictures: Picture[] }[] }>("/api/pictures" + at)).labels, at.replace("?", "&"));
 }
 
 // The truth is worked out when it is first asked for, which may take a while.
 async function fetchTruth(): Promise<void> {
   if (!mission?.truth) return;
-  const at = past === null ? "" : `?at=${past}`, wanted = `${mission.life} ${at} ${past === null ? mission.sequence : ""}`;
+  const at = view(), wanted = `${mission.life} ${at} ${past === null ? mission.sequence : ""}`;
   if (truthOf === wanted) return;
   truthOf = wanted;
   try {
@@ -115,7 +126,7 @@ function listen(): void {
   stream.onmessage = (message) => {
     const news = JSON.parse(message.data);
     const isNews = !mission || news.life !== mission.life || news.phase !== mission.phase;
-    if (past !== null && !isNews) return;
+    if (!isNow() && !isNews) return;
     if (mission && !isNews) Object.assign(mission, { sequence: news.sequence, pictures: news.pictures, time_s: news.time_s });
     void refresh(isNews ? "all" : "map");
   };
@@ -124,6 +135,7 @@ function listen(): void {
     if (stream.readyState === EventSource.CLOSED) setTimeout(listen, 2000); // refused: others listen
   };
 }
+setInterval(() => { if (held !== null && past === null && mission?.phase === "live" && !document.hidden) void refresh(); }, 5000);
 document.addEventListener("visibilitychange", () => { if (!document.hidden) void refresh(); });
 
 // ---------- what is shown
@@ -132,15 +144,41 @@ function show(): void {
   if (!mission) return;
   const phase = byId("phase");
   const words: Record<string, string> = { live: "live", whole: mission.source === "run" ? "finished run" : "recording", reading: "reading the recording…", lost: "node not answering" };
-  phase.textContent = past === null ? words[mission.phase] : "as it was"; phase.title = mission.problem;
-  phase.className = mission.phase === "lost" ? "bad" : past !== null ? "past" : mission.phase === "live" ? "good" : "";
+  phase.textContent = held !== null ? `as ${held} ${past === null && mission.phase === "live" ? "holds" : "held"} it` : past === null ? words[mission.phase] : "as it was"; phase.title = mission.problem;
+  phase.className = mission.phase === "lost" ? "bad" : !isNow() ? "past" : mission.phase === "live" ? "good" : "";
   byId("mission").textContent = status ? `mission ${status.mission_id}` : "";
   byId("mission").title = `${mission.place} · console ${mission.version}`;
   showCounts();
   byId("empty").hidden = !map.isEmpty;
   byId("undo").hidden = !mayWrite();
   document.querySelector<HTMLElement>("#layers [data-layer=truth]")!.hidden = !mission.truth;
+  showHolders(); void showHolding();
   showLegend(); showRobots(); showLink(); showEvents(); showTime(); showRamp();
+}
+
+// Whose map it may be: of what is recorded, or remembered.
+function showHolders(): void {
+  const box = byId<HTMLSelectElement>("holders");
+  byId("holder").hidden = !(mission!.source === "node" || mission!.times_s.length > 1) || !status;
+  const names = ["", ...(status?.nodes.map((n) => n.name) ?? [])];
+  if (held !== null && !names.includes(held)) names.push(held);
+  if ([...box.options].map((o) => o.value).join() !== names.join()) box.replaceChildren(...names.map((name) => el("option", { value: name }, name || "whoever heard all")));
+  box.value = held ?? "";
+}
+
+// What it held of whom, and how sure that is.
+async function showHolding(): Promise<void> {
+  const box = byId("holding");
+  box.hidden = held === null;
+  if (held === null) return;
+  try {
+    const of = view(), h = await ask<Holding>("/api/holding" + of);
+    if (of !== view()) return;
+    const others = h.shares.filter((s) => s.robot !== h.node && s.robot.startsWith("R")), whole = others.filter((s) => s.whole).length, late = others.filter((s) => !s.whole);
+    box.textContent = !h.fuses ? `${h.node} fuses nothing: it holds its own cells and topics, as told by ${seconds(h.at_s)}.`
+      : `${h.node} at ${seconds(h.at_s)}: all that ${whole} of ${others.length} robots had said` + (late.length ? `; of ${late.map((s) => `${s.robot} until ${seconds(s.until_s)}${s.certain ? "" : " at least"}`).join(", ")}.` : ".")
+        + (h.agrees === true ? " Its own digest says the same." : h.agrees === false ? " Its own digest says OTHERWISE." : "");
+  } catch (problem) { box.textContent = (problem as Error).message; }
 }
 
 function showCounts(): void {
@@ -156,9 +194,8 @@ function showLegend(): void {
   const isRare = (l: Label): boolean => l.area_m2 < total / 500 && l.name === "" && map.selected !== l.label;
   const rare = labels.filter(isRare);
   const row = (l: Label): HTMLElement => el("div", {
-    class: "row label" + (map.selected === l.label ? " chosen" : ""), tabindex: "0", title: `label ${l.label}, ${l.cells} cells`,
-    click: () => choose(l.label), dblclick: () => nameLabel(l.label),
-    keydown: (e) => { if ((e as KeyboardEvent).key === "Enter" && e.target === e.currentTarget) choose(l.label); },
+    ...pressable(() => choose(l.label)), class: "row label" + (map.selected === l.label ? " chosen" : ""), "data-key": `label ${l.label}`, title: `label ${l.label}, ${l.cells} cells`,
+    "aria-pressed": String(map.selected === l.label), dblclick: () => nameLabel(l.label),
   },
     el("span", { class: "swatch", style: `background:${l.color}` }),
     el("span", { class: "examples" }, ...pictures.ofLabel(l.label).slice(0, 2).map((p) => pictures.image("legend", p))),
@@ -166,9 +203,9 @@ function showLegend(): void {
       el("small", { class: "dim" }, `${area(l.area_m2)} · ${l.robots.length === 1 ? "only " + l.robots[0] : `${l.robots.length} robots`}`)),
     el("span", { class: "bar" }, el("i", { style: `width:${(100 * l.area_m2) / total}%;background:${l.color}` })),
     el("span", { class: "number dim" }, `${((100 * l.area_m2) / total).toFixed(l.area_m2 * 100 < total ? 1 : 0)} %`));
-  byId("legend").replaceChildren(...labels.filter((l) => showRare || !isRare(l)).map(row));
-  if (rare.length > 0) byId("legend").append(el("button", { class: "small rare", click: () => { showRare = !showRare; showLegend(); } },
-    showRare ? "hide the rare ones" : `+ ${rare.length} rare ${rare.length === 1 ? "label" : "labels"}, ${area(rare.reduce((s, l) => s + l.area_m2, 0))} together`));
+  const fold = rare.length === 0 ? [] : [el("button", { class: "small rare", "data-key": "rare", "aria-expanded": String(showRare), click: () => { showRare = !showRare; showLegend(); } },
+    showRare ? "hide the rare ones" : `+ ${rare.length} rare ${rare.length === 1 ? "label" : "labels"}, ${area(rare.reduce((s, l) => s + l.area_m2, 0))} together`)];
+  refill(byId("legend"), ...labels.filter((l) => showRare || !isRare(l)).map(row), ...fold);
 }
 
 function showRobots(): void {
@@ -176,18 +213,18 @@ function showRobots(): void {
   const newest = Math.max(...status.nodes.map((n) => n.heard_s), 0);
   const state = (n: Node): [string, string] => n.agreement === "other" ? ["other map!", "bad"] : isSilent(n, newest) ? [`silent since ${seconds(n.heard_s)}`, "bad"]
     : n.phase === "node" ? ["node", ""] : n.phase !== "flying" ? [n.heard_whole || mission!.source !== "node" ? "landed" : "landed, part missing", ""] : ["flying", "good"];
-  byId("robots").replaceChildren(...status.nodes.map((n) => {
+  refill(byId("robots"), ...status.nodes.map((n) => {
     const number = n.name.startsWith("R") ? Number(n.name.slice(1)) : null;
     const [text, kind] = state(n);
     const used = n.budget > 0 && n.heard_s > 0 ? n.bytes_sent / (n.budget * n.heard_s) : 0;
-    return el("div", { class: "row robot" + (number !== null && map.onlyRobot === number ? " chosen" : ""), tabindex: "0",
-                       title: number === null ? n.name : "Click: only what this robot saw last",
-                       click: () => { if (number !== null) { map.onlyRobot = map.onlyRobot === number ? null : number; map.repaint(); show(); } } },
+    const press = (): void => { map.onlyRobot = map.onlyRobot === number ? null : number; map.repaint(); show(); remember(); };
+    return el("div", { ...(number === null ? {} : { ...pressable(press), "aria-pressed": String(map.onlyRobot === number) }), class: "row robot" + (number !== null && map.onlyRobot === number ? " chosen" : ""),
+                       "data-key": n.name, title: number === null ? n.name : "Click: only what this robot saw last" },
       el("span", { class: "dot", style: `background:${number === null ? "#1d2733" : kind === "bad" ? "#8a8f96" : robotColor(number)}` }),
       el("span", { class: "name" }, n.name), el("span", { class: "state " + kind }, text),
-      el("span", { class: "number dim" }, number === null ? "" : `${n.observation + 1}${n.num_observations ? "/" + n.num_observations : ""} images`),
+      el("span", { class: "number dim" }, number === null ? "" : `${n.observation + 1}${n.num_observations ? "/" + n.num_observations : ""}`),
       el("span", { class: "number", title: `${n.bytes_sent} bytes sent, ${n.queue_bytes} waiting` }, n.budget > 0 ? `${(100 * used).toFixed(0)} % of ${rateText(n.budget)}` : `${(n.bytes_sent / 1000).toFixed(1)} kB`),
-      number !== null && mayWrite() && past === null ? el("button", { class: "small", title: "Make the map as if it had never been there", click: (e) => { e.stopPropagation(); if (confirm(`Make the map as if ${n.name} had never been there? Undo brings it back.`)) void decided({ edit: "exclude", robot: n.name }); } }, "exclude") : null);
+      number !== null && mayWrite() && past === null ? el("button", { class: "small", "data-key": "exclude " + n.name, title: "Make the map as if it had never been there", click: (e) => { e.stopPropagation(); if (confirm(`Make the map as if ${n.name} had never been there? Undo brings it back.`)) void decided({ edit: "exclude", robot: n.name }); } }, "exclude") : null);
   }));
 }
 
@@ -201,8 +238,8 @@ function showLink(): void {
 
 function showEvents(): void {
   const until = past ?? Infinity;
-  byId("events").replaceChildren(...events.filter((e) => e.time_s <= until).slice(-200).reverse().map((e) =>
-    el("div", { class: "row event " + e.kind, tabindex: "0", title: "Click: the map at that time", click: () => travel(e.time_s) }, el("span", { class: "dim when" }, seconds(e.time_s)), el("span", {}, e.text))));
+  refill(byId("events"), ...events.filter((e) => e.time_s <= until).slice(-200).reverse().map((e) =>
+    el("div", { ...pressable(() => travel(e.time_s)), class: "row event " + e.kind, "data-key": `${e.time_s} ${e.text}`, title: "Click: the map at that time" }, el("span", { class: "dim when" }, seconds(e.time_s)), el("span", {}, e.text))));
 }
 
 function showTime(): void {
@@ -248,7 +285,7 @@ function setLayer(layer: Layer): void {
 let strangest: Place[] = [], strangestAt = -Infinity, strangestOf = "";
 async function fetchStrangest(): Promise<void> {
   const of = `${mission?.life} ${mission?.sequence}`;
-  if (past !== null) { strangest = []; return showRamp(); }
+  if (!isNow()) { strangest = []; return showRamp(); }
   if (of === strangestOf || performance.now() < strangestAt + 5000) return;
   [strangestAt, strangestOf] = [performance.now(), of];
   try { strangest = (await ask<{ places: Place[] }>("/api/surprises?least=2")).places.slice(0, 8); } catch { strangest = []; }
@@ -294,6 +331,24 @@ function choose(label: number | null): void {
   map.repaint(); show(); remember();
 }
 
+function linkNext(label: number): void {
+  if (!mayWrite() || past !== null) return;
+  linking = label;
+  byId("map").classList.add("linking");
+  toast(`Now choose the label that is the same as ${nameOf(label)}; Esc: none.`);
+}
+
+// The picture that is looked at closely, under the others; pressed again it goes.
+function look(p: Picture, by: HTMLElement): void {
+  const box = byId("inspector"), open = box.querySelector(".closer"), was = by.getAttribute("aria-expanded") === "true";
+  for (const other of box.querySelectorAll(".look")) other.setAttribute("aria-expanded", "false");
+  open?.remove();
+  if (was) return;
+  by.setAttribute("aria-expanded", "true");
+  const isLive = mission!.source === "node" && mission!.phase === "live" && past === null;
+  by.parentElement!.after(closer(pictures, p, isLive, mayWrite()));
+}
+
 async function inspect(label: number, cell?: HTMLElement): Promise<void> {
   const box = byId("inspector"), l = labels.find((x) => x.label === label);
   box.hidden = false;
@@ -301,17 +356,24 @@ async function inspect(label: number, cell?: HTMLElement): Promise<void> {
   const buttons = el("div", { class: "buttons" });
   if (mayWrite() && past === null) buttons.append(
     el("button", { click: () => nameLabel(label) }, l?.name ? "Rename" : "Name"),
-    el("button", { title: "Say that another label is the same: click it next", click: () => { linking = label; byId("map").classList.add("linking"); toast(`Now click the label that is the same as ${nameOf(label)}.`); } }, "Same as…"));
+    el("button", { title: "Say that another label is the same: choose it next (l)", click: () => linkNext(label) }, "Same as…"));
   buttons.append(el("a", { href: `/api/area?label=${label}&format=geojson`, download: `label${label}.geojson`, class: "button" }, "Patches"));
   const why = el("div", { class: "why dim" }, "asking why…");
   box.replaceChildren(el("div", { class: "head" }, el("span", { class: "swatch big", style: `background:${colorOf(label)}` }), el("b", {}, l?.name || `label ${label}`),
     el("span", { class: "dim" }, l?.name ? `label ${label}` : ""), l ? libraryMark(l) : null, el("span", { class: "grow" }), el("button", { class: "small", "aria-label": "Close", click: () => choose(null) }, "×")),
     l ? el("div", { class: "dim" }, `${area(l.area_m2)}, first seen ${seconds(l.first_seen_s)}, last ${seconds(l.last_seen_s)}, ${(100 * l.certainty).toFixed(0)} % sure in the mean`) : "",
-    el("div", { class: "strip" }, ...pictures.ofLabel(label).slice(0, 8).map((p) => pictures.image("inspector", p))), cell ?? "", buttons, why);
+    el("div", { class: "strip" }, ...pictures.ofLabel(label).slice(0, 8).map((p) => el("button", { class: "look", "aria-expanded": "false", title: "Closer, and what a sharper one costs", click: (e) => look(p, e.currentTarget as HTMLElement) }, pictures.image("inspector", p)))), cell ?? "", buttons, why);
   try {
     const w = await ask<Why>(`/api/why?label=${label}`);
     if (map.selected === label) why.replaceWith(whyTable(w));
   } catch (problem) { why.textContent = (problem as Error).message; }
+}
+
+// Says that one of its things is something else: all but the one that the label is named after.
+function apart(w: Why, robot: string, topic: number): HTMLElement | null {
+  const number = Number(robot.slice(1)) * 10000 + topic;
+  if (!mayWrite() || past !== null || robot === LIBRARY || number === w.label) return null;
+  return el("button", { class: "small", title: "This is something else: take it out of the label", "aria-label": `${robot} topic ${topic} is something else`, click: () => void decided({ edit: "unlink", a: String(w.label), b: String(number) }).then(() => { if (map.selected === w.label) void inspect(w.label); }) }, "other");
 }
 
 function whyTable(w: Why): HTMLElement {
@@ -327,7 +389,7 @@ function whyTable(w: Why): HTMLElement {
     el("table", {}, el("tr", {}, el("th", { colspan: "2" }, "seen by"), el("th", { title: "mean similarity to the others of this label, 0 to 1" }, "like these"), el("th", { colspan: "2", title: "the thing outside this label that is most like it" }, "most like it outside")),
       ...w.members.map((m) => el("tr", {}, el("td", { class: "face" }, face("member", m.robot, m.topic)),
         el("td", {}, el("span", { class: "dot", style: `background:${m.robot === LIBRARY ? "#1d2733" : robotColor(Number(m.robot.slice(1)))}` }), m.robot === LIBRARY ? "library" : m.robot,
-          el("small", { class: "dim" }, m.robot === LIBRARY ? " of missions before" : ` topic ${m.topic}, ${m.cells} cells`)),
+          el("small", { class: "dim" }, m.robot === LIBRARY ? " of missions before" : ` topic ${m.topic}, ${m.cells} cells`), apart(w, m.robot, m.topic)),
         el("td", {}, bar(m.mean_similarity, "#0072b2")),
         el("td", { class: "face" }, m.outsider ? face(`outsider of ${m.robot}/${m.topic}`, m.outsider.robot, m.outsider.topic) : ""),
         el("td", {}, m.outsider ? bar(m.outsider.similarity, "#e69f00") : "–")))),
@@ -427,7 +489,10 @@ function remember(): void {
   const hash = new URLSearchParams({ x: center.x.toFixed(2), y: center.y.toFixed(2), zoom: (depth ? depth.scale() : map.scale).toPrecision(4), layer: map.layer });
   if (depth) hash.set("camera", [depth.azimuth.toFixed(1), depth.elevation.toFixed(1), depth.distance.toPrecision(5), depth.target.z.toFixed(2)].join(" "));
   if (past !== null) hash.set("t", past.toFixed(3));
+  if (held !== null) hash.set("node", held);
   if (map.selected !== null) hash.set("label", String(map.selected));
+  const hidden = [map.showTracks ? "" : "tracks", map.showRobots ? "" : "robots"].filter((s) => s !== "").join(" ");
+  if (hidden) hash.set("without", hidden);
   if (map.onlyRobot !== null) hash.set("robot", String(map.onlyRobot));
   history.replaceState(null, "", "#" + hash.toString());
 }
@@ -437,9 +502,13 @@ function restoreView(): boolean {
   const layer = hash.get("layer") as Layer;
   if (LAYERS.includes(layer)) setLayer(layer);
   map.selected = number("label"); map.onlyRobot = number("robot");
+  const hidden = (hash.get("without") ?? "").split(" ");
+  byId<HTMLInputElement>("tracks").checked = map.showTracks = !hidden.includes("tracks");
+  byId<HTMLInputElement>("names").checked = map.showRobots = !hidden.includes("robots");
   if (map.selected !== null) void inspect(map.selected);
   const [x, y, zoom, t] = [number("x"), number("y"), number("zoom"), number("t")];
-  if (t !== null) travel(t);
+  held = hash.get("node");
+  if (t !== null) travel(t); else if (held !== null) setTimeout(() => void refresh());
   if (map.selected !== null || map.onlyRobot !== null) map.repaint();
   if (x === null || y === null || zoom === null || zoom <= 0) return false;
   map.center = { x, y }; map.scale = Math.max(0.02, Math.min(400, zoom)); map.draw();
@@ -450,15 +519,29 @@ function restoreView(): boolean {
 
 // ---------- hands
 
-const KEYS: [string, string][] = [["click", "what is here, and why"], ["drag, wheel", "move, zoom"], ["arrows + − 0", "move, zoom, see everything"], ["d", "in 3-D: drag or Shift and arrows turn, Shift and drag moves"], ["1 … 7", "label, certainty, surprise, age, robot, coverage, truth (when it is known)"],
-  ["[ ] space", "earlier, later, play"], ["n", "name the chosen label"], ["u", "undo"], ["e", "export"], ["Esc", "choose nothing"]];
+const KEYS: [string, string][] = [["click", "what is here, and why"], ["drag, wheel", "move, zoom"], ["Tab, Enter", "go through everything there is to press, press it"], ["arrows + − 0", "move, zoom, see everything"], ["Enter", "on the map: what is under the cross, and why"], ["d", "in 3-D: drag or Shift and arrows turn, Shift and drag moves"], ["1 … 7", "label, certainty, surprise, age, robot, coverage, truth (when it is known)"],
+  ["[ ] space", "earlier, later, play"], ["n", "name the chosen label"], ["l", "it is the same as another one"], ["u", "undo"], ["e", "export"], ["c", "copy a link to what you see"], ["Esc", "choose nothing"], ["?", "these keys"]];
+
+// Where the clipboard is not to be had (a page that is not from this machine, without TLS), the link is shown.
+function copyLink(): void {
+  remember();
+  const show = (): void => toast(location.href);
+  if (!navigator.clipboard) return show();
+  void navigator.clipboard.writeText(location.href).then(() => toast("The link is copied. It carries no key."), show);
+}
 
 function hands(): void {
   const canvas = map.canvas;
   let from: [number, number] | null = null, moved = false, turns = false;
+  const pinch = new Pinch(canvas);
   canvas.addEventListener("contextmenu", (e) => { if (depth) e.preventDefault(); });
   canvas.addEventListener("pointerdown", (e) => { from = [e.clientX, e.clientY]; moved = false; turns = depth !== null && e.button === 0 && !e.shiftKey; canvas.setPointerCapture(e.pointerId); });
   canvas.addEventListener("pointermove", (e) => {
+    if (pinch.isOn) {
+      const [factor, x, y] = pinch.step();
+      from = null; followed = false;
+      return zoomBy(factor, x, y);
+    }
     if (from) {
       if (Math.abs(e.clientX - from[0]) + Math.abs(e.clientY - from[1]) > 3 || moved) { moved = true; followed = false; (turns ? orbitBy : panBy)(e.clientX - from[0], e.clientY - from[1]); from = [e.clientX, e.clientY]; }
       if (depth) return;
@@ -473,10 +556,15 @@ function hands(): void {
   for (const layer of LAYERS) byId("layers").append(el("button", { role: "radio", "data-layer": layer, "aria-checked": String(layer === map.layer), click: () => setLayer(layer) }, LAYER_TEXT[layer]));
   byId("threed").addEventListener("click", () => void setDepth(depth === null));
   byId("fit").addEventListener("click", () => { followed = true; fitAll(); remember(); });
-  byId<HTMLInputElement>("tracks").addEventListener("change", (e) => { map.showTracks = (e.target as HTMLInputElement).checked; map.draw(); });
-  byId<HTMLInputElement>("names").addEventListener("change", (e) => { map.showRobots = (e.target as HTMLInputElement).checked; map.draw(); });
+  byId<HTMLInputElement>("tracks").addEventListener("change", (e) => { map.showTracks = (e.target as HTMLInputElement).checked; map.draw(); remember(); });
+  byId<HTMLInputElement>("names").addEventListener("change", (e) => { map.showRobots = (e.target as HTMLInputElement).checked; map.draw(); remember(); });
   byId("undo").addEventListener("click", () => void takeBack());
-  byId("copy").addEventListener("click", () => { remember(); void navigator.clipboard?.writeText(location.href).then(() => toast("The link is copied. It carries no key."), () => toast(location.href)); });
+  byId("copy").addEventListener("click", copyLink);
+  byId("holders").addEventListener("change", (e) => {
+    held = (e.target as HTMLSelectElement).value || null;
+    choose(null); map.sequence = 0; map.life = "";
+    remember(); void refresh();
+  });
   byId("export").addEventListener("click", () => { if (mission) openExports(mission); });
   byId<HTMLInputElement>("time").addEventListener("input", (e) => travel(Number((e.target as HTMLInputElement).value)));
   byId("now").addEventListener("click", () => travel(null));
@@ -484,19 +572,27 @@ function hands(): void {
   const keys = byId<HTMLDialogElement>("keys");
   keys.append(el("h2", {}, "Keys"), el("table", {}, ...KEYS.map(([k, what]) => el("tr", {}, el("td", {}, el("kbd", {}, k)), el("td", {}, what)))), el("form", { method: "dialog" }, el("button", {}, "Close")));
   byId("help").addEventListener("click", () => keys.showModal());
-  addEventListener("resize", () => { map.draw(); showLink(); });
+  new ResizeObserver(() => { // what lies over the map's top
+    map.bar = byId("bar").offsetHeight;
+    byId("mapbox").style.setProperty("--bar", `${map.bar}px`);
+    if (followed) fitAll();
+  }).observe(byId("bar"));
+  addEventListener("resize", () => { if (followed) fitAll(); map.draw(); showLink(); });
+  for (const event of ["focus", "blur"]) canvas.addEventListener(event, () => { map.showCross = canvas.matches(":focus-visible"); map.draw(); });
   addEventListener("keydown", (e) => {
     if (e.ctrlKey || e.metaKey || e.altKey || (e.target as HTMLElement).matches("input:not([type=range]):not([type=checkbox]), select")) return;
     const arrow = depth && e.shiftKey ? orbitBy : panBy;
     const act: Record<string, () => void> = {
       ArrowLeft: () => arrow(60, 0), ArrowRight: () => arrow(-60, 0), ArrowUp: () => arrow(0, 60), ArrowDown: () => arrow(0, -60),
       "+": () => zoomBy(1.3), "=": () => zoomBy(1.3), "-": () => zoomBy(1 / 1.3), "0": fitAll, d: () => void setDepth(depth === null), "[": () => step(-1), "]": () => step(1), " ": play,
-      n: () => { if (map.selected !== null) nameLabel(map.selected); }, u: () => { if (mayWrite()) void takeBack(); }, "?": () => keys.showModal(), e: () => { if (mission) openExports(mission); },
+      n: () => { if (map.selected !== null) nameLabel(map.selected); }, l: () => { if (map.selected !== null) linkNext(map.selected); }, c: copyLink, u: () => { if (mayWrite()) void takeBack(); }, "?": () => keys.showModal(), e: () => { if (mission) openExports(mission); },
       Escape: () => { linking = null; byId("map").classList.remove("linking"); map.onlyRobot = null; choose(null); },
     };
     LAYERS.forEach((layer, i) => (act[String(i + 1)] = () => { if (layer !== "truth" || mission?.truth) setLayer(layer); }));
     if (e.target instanceof HTMLInputElement && e.target.type === "range" && e.key.startsWith("Arrow")) return;
-    if (e.target instanceof HTMLButtonElement && e.key === " ") return;
+    if ((e.target instanceof HTMLButtonElement || (e.target as HTMLElement).matches("a, input, summary")) && e.key === " ") return;
+    if (document.querySelector("dialog[open]")) return;
+    if (e.key === "Enter" && e.target === canvas) act.Enter = () => { map.showCross = true; void inspectCell(cellUnder(...map.cross())); };
     const action = act[e.key];
     if (!action) return;
     e.preventDefault(); action();

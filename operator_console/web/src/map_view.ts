@@ -9,7 +9,7 @@ export const LAYERS: Layer[] = ["label", "certainty", "surprise", "age", "robot"
 export interface Cell { x: number; y: number; z: number; label: number; seen: number; robot: number; certainty: number; surprise: number; truth: number | null }
 
 const CHUNK = 8; // tiles along the edge of a picture
-const SILENT_S = 5;
+const SILENT_S = 5, HEARTBEAT_BYTES = 250, HEARTBEAT_SHARE = 0.2; // a heartbeat takes at most a fifth of the budget
 
 // Another way to show the same cells, under this canvas.
 export interface DepthView {
@@ -29,7 +29,8 @@ export class MapView {
   center = { x: 0, y: 0 }; scale = 4; // metres; pixels a metre
   tracks: Track[] = []; nodes: Node[] = [];
   lastFrameMs = 0;
-  covered = 0; // pixels at the right that something lies over
+  covered = 0; bar = 34; // pixels at the right, at the top that something lies over
+  showCross = false; // who has no mouse asks for what is under it
   depth: DepthView | null = null; // shown instead of the flat map
   readonly tiles = new Map<string, Tile>();
   private truth = new Map<string, Tile>(); // with classes as labels
@@ -173,6 +174,7 @@ export class MapView {
       this.drawRobots(c);
       this.drawScale(c, height);
     }
+    if (this.showCross) this.drawCross(c);
     this.lastFrameMs = performance.now() - begun;
   }
 
@@ -255,6 +257,21 @@ export class MapView {
     }
   }
 
+  // The middle of what is to be seen of the map, pixels.
+  cross(): [number, number] {
+    const bar = this.bar + 18;
+    return [(this.canvas.clientWidth - this.covered) / 2, bar + (this.canvas.clientHeight - bar) / 2];
+  }
+  private drawCross(c: CanvasRenderingContext2D): void {
+    const [x, y] = this.cross();
+    for (const [color, thickness] of [["#fff", 4], ["#1d2733", 1.5]] as const) {
+      c.strokeStyle = color; c.lineWidth = thickness;
+      c.beginPath();
+      for (const [dx, dy] of [[1, 0], [-1, 0], [0, 1], [0, -1]]) { c.moveTo(x + 4 * dx, y + 4 * dy); c.lineTo(x + 14 * dx, y + 14 * dy); }
+      c.stroke();
+    }
+  }
+
   private drawScale(c: CanvasRenderingContext2D, height: number): void {
     const goal = 110 / this.scale, power = 10 ** Math.floor(Math.log10(goal));
     const metres = [5, 2, 1].map((k) => k * power).find((m) => m <= goal) ?? power;
@@ -305,7 +322,7 @@ export class MapView {
     const [x0, y0, , x1, y1] = bounds;
     this.center = { x: ((x0 + x1) / 2) * this.cellSize, y: ((y0 + y1) / 2) * this.cellSize };
     // The bar above the map hides nothing.
-    const bar = 52, height = Math.max(50, this.canvas.clientHeight - bar), width = Math.max(50, this.canvas.clientWidth - this.covered);
+    const bar = this.bar + 18, height = Math.max(50, this.canvas.clientHeight - bar), width = Math.max(50, this.canvas.clientWidth - this.covered);
     this.scale = 0.95 * Math.min(width / ((x1 - x0 + 1) * this.cellSize), height / ((y1 - y0 + 1) * this.cellSize));
     this.center.x += this.covered / 2 / this.scale;
     this.center.y += bar / 2 / this.scale;
@@ -327,4 +344,6 @@ export class MapView {
 }
 
 // Heard last while others were heard later, and not because it has landed.
-export const isSilent = (node: Node, newest: number): boolean => node.phase === "flying" && newest - node.heard_s > SILENT_S;
+// Four heartbeats, as seldom as its budget makes them.
+export const isSilent = (node: Node, newest: number): boolean =>
+  node.phase === "flying" && newest - node.heard_s > Math.max(SILENT_S, node.budget > 0 ? (4 * HEARTBEAT_BYTES) / (HEARTBEAT_SHARE * node.budget) : 0);
