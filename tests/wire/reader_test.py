@@ -237,7 +237,7 @@ class Recording(unittest.TestCase):
             self.assertEqual((told["channel"], told["kind"], len(told["bricks"])), (channel, "BRICK", 2))
             with open(path, "wb") as file:
                 file.write(whole[:-1])
-            self.assertEqual(run("--messages", path, expect=1).stderr, "shoal_reader.py: bad length: n is 35\n")
+            self.assertEqual(run("--messages", path, expect=1).stderr, "shoal_reader.py: bad length: n is 34\n")
 
     def test_a_robots_own_map(self):
         out = os.path.join(self.top, "own.csv")
