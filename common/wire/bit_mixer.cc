@@ -40,6 +40,7 @@ constexpr int32_t stretched(uint32_t p) { return kStretch[std::min<uint32_t>(p >
 constexpr std::array<int32_t, 8> kBelief = {0, 110, 160, 190, 210, 225, 236, 245};
 
 constexpr int kLearningShift = 15;
+constexpr int32_t kFirstWeight = 14336;  // least bytes for six and seven contexts
 
 }  // namespace
 
@@ -48,7 +49,7 @@ uint32_t squash(int32_t odds) { return squashed(odds); }
 int32_t stretch(uint32_t p) { return stretched(p); }
 
 BitMixer::BitMixer(size_t num_contexts, size_t num_sets)
-    : num_contexts_(num_contexts), weights_(num_contexts * num_sets, 65536 / 3) {
+    : num_contexts_(num_contexts), weights_(num_contexts * num_sets, kFirstWeight) {
   SHOAL_DEMAND(num_contexts >= 1 && num_contexts <= kMaxContexts);
 }
 

@@ -68,4 +68,15 @@ int CellField::nearestHeight(int x, int y, int z) const {
   return i < 0 ? kNone : cells_[static_cast<size_t>(i)].z - brick_[2] * kEdge;
 }
 
+uint32_t CellField::heights(int x, int y) const {
+  const int64_t least = int64_t{brick_[2]} * kEdge - 1;
+  uint32_t heights = 0;
+  for (int32_t i = lastOf(x, y); i >= 0; i = below_[static_cast<size_t>(i)]) {
+    const int64_t height = cells_[static_cast<size_t>(i)].z - least;
+    if (height < 0) break;
+    if (height <= kEdge + 1) heights |= 1u << height;
+  }
+  return heights;
+}
+
 }  // namespace shoal::wire

@@ -63,6 +63,9 @@ class CellField {
   int nearestHeight(int x, int y, int z) const;
   static constexpr int kNone = 1 << 20;
 
+  /// Which cells of a column are known, from one below the brick begun (bit 0) to one above it (bit 17).
+  uint32_t heights(int x, int y) const;
+
   const std::vector<world::CellIndex>& cells() const { return cells_; }
   const std::vector<NearCells>& near() const { return near_; }
 

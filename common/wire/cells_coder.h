@@ -11,6 +11,7 @@
 
 #include "shoal/wire/bit_mixer.h"
 #include "shoal/wire/cell_field.h"
+#include "shoal/wire/context_table.h"
 #include "shoal/wire/numbers.h"
 #include "shoal/world/ids.h"
 
@@ -37,8 +38,8 @@ class Occupancy {
 };
 
 /// Says which cells are there, brick by brick: the heights between which all of a brick's cells lie, then a
-/// bit for each place between them, expected to be as in the columns known already. A flat layer costs next
-/// to nothing, a hole about its surprise.
+/// bit for each place between them, expected to be as in the columns known already, or where lines and a
+/// plane through them lead. A flat layer costs next to nothing, a hole about its surprise.
 class GeometryCoder {
  public:
   GeometryCoder();
@@ -48,8 +49,16 @@ class GeometryCoder {
   void code(Coder& coder, const std::array<int32_t, 3>& brick, const Occupancy& occupancy, CellField& field);
 
  private:
+  using Around = std::array<uint32_t, 4>;  // CellField::heights() of four columns
+
+  // Is there a cell at `place` of the brick begun?
+  template <typename Coder>
+  int codePlace(Coder& coder, const CellField& field, const std::array<int, 3>& place, const Around& around,
+                bool alone, bool has_cell, size_t state, int bit);
+
   BitTree lowest_{4}, highest_{4};
-  std::vector<ContextBit> alike_, heights_, diagonals_;
+  std::vector<ContextBit> alike_;
+  ContextTable heights_, diagonals_, corners_, lines_, slopes_, patterns_;
   BitMixer mixer_;
 };
 

@@ -12,6 +12,7 @@
 
 #include "examples.h"
 #include "shoal/wire/checksum.h"
+#include "shoal/wire/message.h"
 #include "shoal/wire/message_kind.h"
 
 namespace {
@@ -53,7 +54,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   if (size % 8 != 0 && size >= fixed) {
     put(bytes, 0, static_cast<uint64_t>(shoal::wire::fingerprintOf(kind)), 8);
     put(bytes, fixed - 4, size - fixed, 4);
-    bytes[shoal::wire::kFormatOffset] = 1;
+    bytes[shoal::wire::kFormatOffset] = shoal::wire::kFormat;
     shoal::wire::writeChecksum(bytes, fixed);
   }
   const Bytes again = shoal::wire::decodeAndEncode(kind, bytes);

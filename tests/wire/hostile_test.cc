@@ -10,6 +10,7 @@
 
 #include "examples.h"
 #include "shoal/wire/checksum.h"
+#include "shoal/wire/message.h"
 #include "shoal/wire/message_kind.h"
 #include "shoal/wire/piece_codec.h"
 
@@ -155,7 +156,9 @@ TEST_P(GoldenTest, CraftedMessagesAreRefusedByReason) {
   if (!is_empty) {
     EXPECT_EQ(crafted([&](Bytes& b) { setLength(b, fixed, 0); }), DecodeError::kTrailingBytes);
   }
-  EXPECT_EQ(crafted([](Bytes& b) { b[kFormatOffset] = 2; }), DecodeError::kUnknownFormat);
+  for (const int other : {kFormat - 1, kFormat + 1})
+    EXPECT_EQ(crafted([&](Bytes& b) { b[kFormatOffset] = static_cast<uint8_t>(other); }),
+              DecodeError::kUnknownFormat);
   EXPECT_EQ(crafted([](Bytes& b) { b[19] ^= 4; }), DecodeError::kChecksum);
   EXPECT_EQ(crafted([](Bytes& b) { b[8] |= 0x80; }),
             DecodeError::kBadField);  // before the year 1970, so to say

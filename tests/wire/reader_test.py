@@ -104,7 +104,7 @@ class Messages(unittest.TestCase):
     def test_another_format_is_refused_by_that_reason(self):
         for data in golden().values():
             with self.assertRaises(shoal_reader.BadMessage) as caught:
-                shoal_reader.decode(data[:20] + b"\2" + data[21:])
+                shoal_reader.decode(data[:20] + b"\1" + data[21:])
             self.assertEqual(caught.exception.reason, "unknown format")
 
     def test_a_datagram_is_header_channel_and_message(self):
@@ -237,7 +237,7 @@ class Recording(unittest.TestCase):
             self.assertEqual((told["channel"], told["kind"], len(told["bricks"])), (channel, "BRICK", 2))
             with open(path, "wb") as file:
                 file.write(whole[:-1])
-            self.assertEqual(run("--messages", path, expect=1).stderr, "shoal_reader.py: bad length: n is 35\n")
+            self.assertEqual(run("--messages", path, expect=1).stderr, "shoal_reader.py: bad length: n is 34\n")
 
     def test_a_robots_own_map(self):
         out = os.path.join(self.top, "own.csv")

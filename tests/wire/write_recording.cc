@@ -161,7 +161,7 @@ std::vector<comms::Packet> rubbish(const comms::Packet& good) {
   packets[1].channel = "SHOAL_R00_HEARTBEAT";
   packets[2].bytes[25] ^= 1;
   packets[3].bytes.pop_back();
-  packets[4].bytes[20] = 2;  // another format
+  packets[4].bytes[20] = 1;  // another format
   packets[5].bytes.assign(5, 0);
   packets[6].channel = "SHOAL_R77" + good.channel.substr(good.channel.rfind('_'));
   return packets;

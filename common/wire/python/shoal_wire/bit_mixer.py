@@ -46,7 +46,7 @@ class Mixer:
         self.count, self.sets = count, {}
 
     def bit(self, bits, contexts, which):
-        weights = self.sets.setdefault(which, [65536 // 3] * self.count)
+        weights = self.sets.setdefault(which, [14336] * self.count)
         odds, total = [], 0
         for weight, (one, seen) in zip(weights, contexts):
             belief = _BELIEF[seen] if seen < len(_BELIEF) else 256

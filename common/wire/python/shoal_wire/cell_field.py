@@ -36,32 +36,56 @@ class CellField:
         self.near.append(near)
 
 
+_AROUND = ((-1, 0), (0, -1), (-1, -1), (-1, 1), (-2, 0), (0, -2))
+
+
+def _height(column, z):
+    """That of a column's cells, given by ascending heights, which is nearest to z, the lower of two, or None."""
+    if len(column) < 2:
+        return column[0] if column else None
+    return min(column, key=lambda height: (abs(height - z), height))
+
+
 class Geometry:
     def __init__(self):
         self.lowest, self.highest = Models(), Models()
         self.alike = {c: [(2000, 26000, 50000, 63500)[bin(c & 7).count("1")], 3] for c in range(64)}
-        self.heights, self.diagonals, self.mixer = Contexts(), Contexts(), Mixer(3)
+        self.heights, self.diagonals, self.corners = Contexts(), Contexts(), Contexts()
+        self.lines, self.slopes, self.patterns = Contexts(), Contexts(), Contexts()
+        self.mixer = Mixer(7)
 
     def read(self, bits, brick, field):
         """Adds the cells of a brick to `field`."""
         lowest, highest = bits.tree(self.lowest, 4), bits.tree(self.highest, 4)
         x0, y0, z0 = (16 * index for index in brick)
 
-        def step(x, y, z):
-            found = field.nearest(x, y, z)
-            return 0 if found is None else min(max(found[0] - z, -3), 3) + 4
-
         for x in range(x0, x0 + 16):
             for y in range(y0, y0 + 16):
-                began = 0
-                alone = int(step(x, y - 1, z0 + lowest) == 0 and step(x - 1, y, z0 + lowest) == 0)
+                around = [[z for z, _ in field.columns.get((x + dx, y + dy), ())] for dx, dy in _AROUND]
+                began, state = 0, int((field.nearest(x, y, z0 + lowest - 1) or (None,))[0] == z0 + lowest - 1)
+                alone = not around[0] and not around[1]
                 for z in range(z0 + lowest, z0 + highest + 1):
-                    west, south = step(x - 1, y, z), step(x, y - 1, z)
-                    southwest, northwest = step(x - 1, y - 1, z), step(x - 1, y + 1, z)
-                    same = ((west == 4) | (south == 4) << 1 | (southwest == 4) << 2 | (west > 4) << 3 |
-                            (south > 4) << 4 | began << 5)
-                    contexts = (self.alike[same], self.heights[west, south, began],
-                                self.diagonals[southwest, northwest, west, began])
-                    if self.mixer.bit(bits, contexts, alone):
+                    if self.mixer.bit(bits, self._contexts(around, z, began, state), (alone, state)):
                         field.add(x, y, z)
-                        began = 1
+                        began = state = 1
+                    elif state == 1:
+                        state = 2
+
+    def _contexts(self, around, z, began, state):
+        def step(seen):
+            return 0 if seen is None else min(max(seen - z, -3), 3) + 4
+
+        def trend(seen, onward, back):
+            return 0 if None in (seen, onward, back) else min(max(seen + onward - back - z, -4), 3) + 5
+
+        h_west, h_south, h_southwest, h_northwest, h_west2, h_south2 = (_height(column, z) for column in around)
+        west, south, southwest, northwest = step(h_west), step(h_south), step(h_southwest), step(h_northwest)
+        same = ((west == 4) | (south == 4) << 1 | (southwest == 4) << 2 | (west > 4) << 3 | (south > 4) << 4 |
+                began << 5)
+        trends = (trend(h_west, h_south, h_southwest), trend(h_west, h_west, h_west2),
+                  trend(h_south, h_south, h_south2))
+        pattern = tuple(height in column for column in around[:4] for height in (z - 1, z, z + 1))
+        return (self.alike[same], self.heights[west, south, state], self.diagonals[southwest, northwest, west, state],
+                self.corners[west, south, southwest, northwest, state],
+                self.lines[west, south, step(h_west2), step(h_south2), state], self.slopes[trends, state],
+                self.patterns[pattern, state])

@@ -44,7 +44,7 @@ final class BitMixer {
   int bit(BitReader bits, int[][] contexts, int which) throws BadMessage {
     long[] weights = sets.computeIfAbsent(which, k -> {
       long[] made = new long[count];
-      Arrays.fill(made, 65536 / 3);
+      Arrays.fill(made, 14336);
       return made;
     });
     long[] odds = new long[count];

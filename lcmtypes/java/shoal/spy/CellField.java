@@ -18,8 +18,10 @@ final class CellField {
   private final HashMap<Long, List<int[]>> columns = new HashMap<>();  // (x, y) -> {z, place}, ascending
   private final BitReader.Models lowest = new BitReader.Models(), highest = new BitReader.Models();
   private final int[][] alike = new int[64][];
-  private final BitMixer.Contexts heights = new BitMixer.Contexts(), diagonals = new BitMixer.Contexts();
-  private final BitMixer mixer = new BitMixer(3);
+  private final BitMixer.Contexts heights = new BitMixer.Contexts(), diagonals = new BitMixer.Contexts(),
+                                  corners = new BitMixer.Contexts(), lines = new BitMixer.Contexts(),
+                                  slopes = new BitMixer.Contexts(), patterns = new BitMixer.Contexts();
+  private final BitMixer mixer = new BitMixer(7);
 
   CellField() {
     int[] begin = {2000, 26000, 50000, 63500};
@@ -43,9 +45,23 @@ final class CellField {
     return best;
   }
 
-  private int step(int x, int y, int z) {
+  private boolean has(int x, int y, int z) {
     int[] found = nearest(x, y, z);
+    return found != null && found[0] == z;
+  }
+
+  private static int step(int[] found, int z) {
     return found == null ? 0 : Math.min(Math.max(found[0] - z, -3), 3) + 4;
+  }
+
+  /** Where a line or a plane leads, seen from z. */
+  private static int trend(int[] seen, int[] onward, int[] back, int z) {
+    if (seen == null || onward == null || back == null) return 0;
+    return Math.min(Math.max(seen[0] + onward[0] - back[0] - z, -4), 3) + 5;
+  }
+
+  private int pattern(int x, int y, int z) {
+    return (has(x, y, z - 1) ? 1 : 0) | (has(x, y, z) ? 2 : 0) | (has(x, y, z + 1) ? 4 : 0);
   }
 
   private void add(int x, int y, int z) {
@@ -68,21 +84,35 @@ final class CellField {
     int x0 = 16 * brickX, y0 = 16 * brickY, z0 = 16 * brickZ;
     for (int x = x0; x < x0 + 16; ++x) {
       for (int y = y0; y < y0 + 16; ++y) {
-        int began = 0;
-        int alone = step(x, y - 1, z0 + low) == 0 && step(x - 1, y, z0 + low) == 0 ? 1 : 0;
+        int began = 0, state = has(x, y, z0 + low - 1) ? 1 : 0;
+        boolean alone = !columns.containsKey(key(x, y - 1)) && !columns.containsKey(key(x - 1, y));
         for (int z = z0 + low; z <= z0 + high; ++z) {
-          int west = step(x - 1, y, z), south = step(x, y - 1, z);
-          int southwest = step(x - 1, y - 1, z), northwest = step(x - 1, y + 1, z);
-          int same = (west == 4 ? 1 : 0) | (south == 4 ? 2 : 0) | (southwest == 4 ? 4 : 0) | (west > 4 ? 8 : 0) |
-                     (south > 4 ? 16 : 0) | began << 5;
-          int[][] contexts = {alike[same], heights.get((west * 8 + south) * 2 + began),
-                              diagonals.get(((southwest * 8 + northwest) * 8 + west) * 2 + began)};
-          if (mixer.bit(bits, contexts, alone) == 1) {
+          if (mixer.bit(bits, contexts(x, y, z, began, state), (alone ? 3 : 0) + state) == 1) {
             add(x, y, z);
-            began = 1;
+            began = state = 1;
+          } else if (state == 1) {
+            state = 2;
           }
         }
       }
     }
+  }
+
+  private int[][] contexts(int x, int y, int z, int began, int state) {
+    int[] westOf = nearest(x - 1, y, z), southOf = nearest(x, y - 1, z), southwestOf = nearest(x - 1, y - 1, z);
+    int[] west2 = nearest(x - 2, y, z), south2 = nearest(x, y - 2, z);
+    int west = step(westOf, z), south = step(southOf, z);
+    int southwest = step(southwestOf, z), northwest = step(nearest(x - 1, y + 1, z), z);
+    int same = (west == 4 ? 1 : 0) | (south == 4 ? 2 : 0) | (southwest == 4 ? 4 : 0) | (west > 4 ? 8 : 0) |
+               (south > 4 ? 16 : 0) | began << 5;
+    int both = west * 8 + south, diagonal = southwest * 8 + northwest;
+    int trends = (trend(westOf, southOf, southwestOf, z) * 9 + trend(westOf, westOf, west2, z)) * 9 +
+                 trend(southOf, southOf, south2, z);
+    int pattern = pattern(x - 1, y, z) | pattern(x, y - 1, z) << 3 | pattern(x - 1, y - 1, z) << 6 |
+                  pattern(x - 1, y + 1, z) << 9;
+    return new int[][] {alike[same], heights.get(both * 3 + state), diagonals.get((diagonal * 8 + west) * 3 + state),
+                        corners.get((both * 64 + diagonal) * 3 + state),
+                        lines.get((both * 64 + step(west2, z) * 8 + step(south2, z)) * 3 + state),
+                        slopes.get(trends * 3 + state), patterns.get(pattern * 3 + state)};
   }
 }

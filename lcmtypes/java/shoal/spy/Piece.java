@@ -54,7 +54,7 @@ public final class Piece {
     int n = in.getInt(head - 4);
     require(n == message.length - head || n == message.length - head - SEAL, "n");
     require(n >= 0 && head + n <= MAX_MESSAGE, "n");
-    require(in.getLong(8) >= 0 && message[20] == 1, "time or format");
+    require(in.getLong(8) >= 0 && message[20] == 2, "time or format");
     require(checksum(message, head, n) == (in.getShort(head - 6) & 0xFFFF), "checksum");
     byte[] payload = Arrays.copyOfRange(message, head, head + n);
     if (!again) return contents(fingerprint, ByteBuffer.wrap(message, FRONT, fields), payload);
