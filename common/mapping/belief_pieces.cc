@@ -160,20 +160,20 @@ class BeliefChanges::Round {
 
   // Finds out whether a brick has changed. Returns its number of cells, 0 when it was looked at before.
   size_t look(const Brick& brick) {
-    const auto [sums, is_first] = looked_.try_emplace(brick);
+    const auto [looked, is_first] = looked_.try_emplace(brick);
     if (!is_first) return 0;
-    const std::vector<BelievedCell> cells = bricks_.cellsOf(brick);
-    sums->second = sumsOf(cells, outline_.detail);
+    looked->second.cells = bricks_.cellsOf(brick);
+    looked->second.sums = sumsOf(looked->second.cells, outline_.detail);
     for (const PieceKind kind : kBrickKinds) {
       const PieceKey key{outline_.robot, kind, brick};
       Told& told = changes_.told_[key];
-      const bool differs = told.hash != sumOf(kind, sums->second);
+      const bool differs = told.hash != sumOf(kind, looked->second.sums);
       if (differs == (told.since != kNotWaiting)) continue;
       if (!differs) changes_.waiting_.erase({told.since, key});
       told.since = differs ? outline_.version.observation : kNotWaiting;
       if (differs) changes_.waiting_.emplace(told.since, key);
     }
-    return cells.size();
+    return looked->second.cells.size();
   }
 
   // Of those that were found to differ at most so many, as if told. First those of `first`, which were looked
@@ -199,18 +199,26 @@ class BeliefChanges::Round {
     return chosen;
   }
 
+  // As they were when looked at.
+  const std::vector<BelievedCell>& cellsOf(const Brick& brick) const { return looked_.at(brick).cells; }
+
  private:
+  struct Looked {
+    std::array<uint64_t, 2> sums{};
+    std::vector<BelievedCell> cells;
+  };
+
   void choose(const PieceKey& key, std::set<PieceKey>& chosen) {
     Told& told = changes_.told_[key];
     changes_.waiting_.erase({told.since, key});
-    told = {sumOf(key.kind, looked_.at(key.index)), kNotWaiting};
+    told = {sumOf(key.kind, looked_.at(key.index).sums), kNotWaiting};
     chosen.insert(key);
   }
 
   BeliefChanges& changes_;
   const LocalBelief& outline_;
   const BelievedBricks& bricks_;
-  std::map<Brick, BrickSums> looked_;
+  std::map<Brick, Looked> looked_;
 };
 
 std::vector<Piece> BeliefChanges::update(const LocalBelief& belief, size_t most_bricks) {
@@ -245,7 +253,7 @@ std::vector<Piece> BeliefChanges::update(const LocalBelief& outline, const Belie
     looked_until_ = next;
   }
   const std::set<PieceKey> told = round.choose(seen, most_bricks);
-  for (const PieceKey& key : told) changed.push_back(brickPiece(outline, key, bricks.cellsOf(key.index)));
+  for (const PieceKey& key : told) changed.push_back(brickPiece(outline, key, round.cellsOf(key.index)));
   return changed;
 }
 
