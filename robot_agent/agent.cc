@@ -60,6 +60,9 @@ constexpr size_t kPublishEvery = 5;
 // what a robot of a team usually holds. What has changed without being seen waits its turn, and for the end.
 constexpr size_t kMostBricks = 128;
 
+// Cells looked at for what has changed, beside those of the bricks seen: the same, and all of a usual map.
+constexpr size_t kMostCells = 16384;
+
 // A multiple of that. What was flown since the last checkpoint is flown again after a crash, with the same
 // result; a live source cannot be, so then every word that is said stands in a checkpoint first.
 constexpr size_t kSaveEvery = 25;
@@ -185,7 +188,7 @@ void Agent::fly() {
     takeIn(*observation);
     passTimeUntil(clock_.now());
   }
-  publish(mapping::BeliefChanges::kAll);
+  publishAll();
   save();
   if (stopRequested()) return;
   phase_ = wire::Phase::kLanded;
@@ -207,10 +210,10 @@ void Agent::awaitObservation() {
 void Agent::takeIn(const world::Observation& observation) {
   const auto start = std::chrono::steady_clock::now();
   explorer_.observe(observation);
-  belief_ = explorer_.belief();
+  belief_ = explorer_.outline();
   path_.push_back({observation.time, observation.world_from_camera});
   if (path_.size() % kPublishEvery == 0) {
-    publish(kMostBricks);
+    publish();
     sharpenWanted();
   }
   if (path_.size() % (options_.live ? kPublishEvery : kSaveEvery) == 0) save();
@@ -223,10 +226,21 @@ void Agent::takeIn(const world::Observation& observation) {
       observation.number, t.words_ms, t.topics_ms, t.belief_ms, t.pictures_ms, took.count() - t.total());
 }
 
-// Offers what has changed since the last time.
-void Agent::publish(size_t most_bricks) {
+// Offers what is found to have changed since the last time.
+void Agent::publish() {
+  publish(changes_.update(belief_, explorer_, explorer_.takeSeenBricks(), kMostBricks, kMostCells));
+}
+
+// Offers all that has changed. Takes longer the larger the map is.
+void Agent::publishAll() {
   if (path_.empty()) return;
-  for (const mapping::Piece& whole : changes_.update(belief_, most_bricks)) {
+  belief_ = explorer_.belief();
+  explorer_.takeSeenBricks();
+  publish(changes_.update(belief_));
+}
+
+void Agent::publish(const std::vector<mapping::Piece>& changed) {
+  for (const mapping::Piece& whole : changed) {
     const std::string channel = comms::channelName(name_, wire::channelKind(wire::kindOf(whole)));
     const size_t most = mostBytes(channel, options_.budget, bus_.trailerBytes());
     auto parts = wire::encodeToFit(whole, most, options_.mission);
@@ -309,7 +323,7 @@ void Agent::resume() {
   path_ = c.path;
   if (!path_.empty()) {
     belief_ = explorer_.belief();
-    changes_.restore(belief_, c.untold);
+    changes_.restore(belief_, c.untold, c.looked_until);
   }
   for (const Checkpoint::Said& said : c.said) {
     own_.apply(said.piece);
@@ -331,7 +345,8 @@ void Agent::save() {
                .wall_us = wallUs(),
                .explorer = explorer_.checkpoint(),
                .said = {},
-               .untold = changes_.waiting(),
+               .untold = changes_.waiting(belief_, explorer_),
+               .looked_until = changes_.lookedUntil(),
                .path = path_};
   own_.visit([&](const mapping::Piece& piece) {
     c.said.push_back({piece, sender_.queue().isWaiting(queueKey(piece.key, piece.part))});
@@ -433,7 +448,7 @@ comms::Packet Agent::heartbeat(int64_t now_us) {
   h.observation = path_.empty() ? -1 : belief_.version.observation;
   h.num_observations = source_.numObservations().value_or(0);
   h.num_topics = static_cast<int32_t>(belief_.topics.size());
-  h.num_cells = static_cast<int32_t>(belief_.cells.size());
+  h.num_cells = explorer_.numCells();
   h.cell_size_m = options_.explorer.cell_size_m;
   h.own_digest = own_.digestOf(options_.explorer.robot);
   h.state_digest = options_.fuse ? others_.beliefs().digest() : own_.digest();

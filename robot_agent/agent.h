@@ -59,7 +59,9 @@ class Agent {
   void resume();
   void save();
   void takeIn(const world::Observation& observation);
-  void publish(size_t most_bricks);
+  void publish();
+  void publishAll();
+  void publish(const std::vector<mapping::Piece>& changed);
   void say(const mapping::Piece& part);
   void say(const mapping::Piece& part, wire::Bytes message);
   void offer(const mapping::Piece& part, wire::Bytes message);
@@ -78,10 +80,10 @@ class Agent {
   robot::Explorer explorer_;
   mapping::BeliefChanges changes_;
   wire::PictureChanges picture_changes_;
-  std::set<uint64_t> wanted_;  // keys of pieces of ours that nobody has made yet
-  mapping::LocalBelief belief_;
-  mapping::BeliefStore own_;                                 // what was said, for its digest
-  std::map<mapping::PieceKey, int32_t> num_parts_;           // keys in the send queue
+  std::set<uint64_t> wanted_;                       // keys of pieces of ours that nobody has made yet
+  mapping::LocalBelief belief_;                     // in flight without its cells
+  mapping::BeliefStore own_;                        // what was said, for its digest
+  std::map<mapping::PieceKey, int32_t> num_parts_;  // keys in the send queue
   std::map<std::string, mapping::Piece, std::less<>> said_;  // by its keys
   fusion_node::MissionState others_;
   comms::MissionClock clock_;

@@ -16,7 +16,7 @@
 namespace shoal::robot_agent {
 namespace {
 
-constexpr std::string_view kMagic = "SHOALRC2";  // the last letter is the version
+constexpr std::string_view kMagic = "SHOALRC3";  // the last letter is the version
 
 uint64_t hashOf(std::span<const uint8_t> bytes) {
   uint64_t hash = bytes.size();
@@ -66,6 +66,10 @@ Checkpoint read(wire::ByteReader& in, const std::string& path) {
     waiting.since = static_cast<int32_t>(in.bigEndian(4));
     c.untold.push_back(waiting);
   }
+  if (in.bigEndian(1) != 0) {
+    c.looked_until.emplace();
+    for (int32_t& i : *c.looked_until) i = static_cast<int32_t>(in.bigEndian(4));
+  }
   for (uint64_t n = in.varint(); n > 0 && !in.failed(); --n) {
     mapping::StampedPose pose;
     pose.time.us = number64(in);
@@ -105,6 +109,10 @@ void writeCheckpoint(const std::string& path, const Checkpoint& c) {
     for (const int32_t i : waiting.key.index) wire::putBigEndian(out, static_cast<uint32_t>(i), 4);
     wire::putBigEndian(out, waiting.told_hash, 8);
     wire::putBigEndian(out, static_cast<uint32_t>(waiting.since), 4);
+  }
+  out.push_back(c.looked_until ? 1 : 0);
+  if (c.looked_until) {
+    for (const int32_t i : *c.looked_until) wire::putBigEndian(out, static_cast<uint32_t>(i), 4);
   }
   wire::putVarint(out, c.path.size());
   for (const mapping::StampedPose& pose : c.path) {

@@ -28,7 +28,8 @@ struct Checkpoint {
     bool waits = false;  ///< not sent yet
   };
   std::vector<Said> said;                               ///< the usable parts of the newest versions
-  std::vector<mapping::BeliefChanges::Waiting> untold;  ///< what had changed and was not to be said yet
+  std::vector<mapping::BeliefChanges::Waiting> untold;  ///< what had changed and was not said yet
+  std::optional<mapping::Brick> looked_until;           ///< where the look for what has changed had arrived
   std::vector<mapping::StampedPose> path;               ///< one pose an observation
 };
 

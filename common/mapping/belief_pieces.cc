@@ -4,15 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <set>
-#include <tuple>
 
 #include "shoal/random.h"
 
 namespace shoal::mapping {
 
 namespace {
-
-using Brick = std::array<int32_t, 3>;
 
 std::vector<int32_t> groupSizes(const LocalBelief& belief) {
   std::vector<int32_t> sizes;
@@ -48,65 +45,73 @@ class ByBrick {
   std::map<Brick, Value>::iterator at_ = values_.end();
 };
 
-// The bricks whose keys `told` accepts, labels first.
-template <typename IsTold>
-std::vector<Piece> brickPieces(const LocalBelief& belief, IsTold is_told) {
-  struct Parts {
-    bool is_new = true, labels = false, certainties = false;
-    BrickPart brick;
-    CertaintyPart certainty;
-  };
-  const auto keyOf = [&](PieceKind kind, const Brick& brick) { return PieceKey{belief.robot, kind, brick}; };
-  ByBrick<Parts> bricks;
-  for (const BelievedCell& c : belief.cells) {
-    Parts& parts = bricks.of(c.cell);
-    if (parts.is_new) {
-      const Brick brick = brickOf(c.cell);
-      parts.is_new = false;
-      parts.labels = is_told(keyOf(PieceKind::kBrick, brick));
-      parts.certainties = is_told(keyOf(PieceKind::kCertainty, brick));
-    }
-    if (parts.labels) parts.brick.cells.push_back({c.cell, c.topic, c.seen});
-    if (parts.certainties) {
-      parts.certainty.cells.push_back(
-          {c.cell, certaintySteps(c.certainty, belief.detail), surpriseSteps(c.surprise)});
-    }
-  }
-  std::vector<Piece> pieces;
-  for (auto& [brick, parts] : bricks.values()) {
-    if (!parts.labels) continue;
-    pieces.push_back({.key = keyOf(PieceKind::kBrick, brick),
-                      .version = belief.version,
-                      .content = std::move(parts.brick)});
-  }
-  for (auto& [brick, parts] : bricks.values()) {
-    if (!parts.certainties) continue;
-    pieces.push_back({.key = keyOf(PieceKind::kCertainty, brick),
-                      .version = belief.version,
-                      .content = std::move(parts.certainty)});
-  }
-  return pieces;
+BrickPart labelsOf(const std::vector<BelievedCell>& cells) {
+  BrickPart part;
+  part.cells.reserve(cells.size());
+  for (const BelievedCell& c : cells) part.cells.push_back({c.cell, c.topic, c.seen});
+  return part;
 }
 
-// What a brick holds, as sums over its cells: as good as the content itself for seeing that it has changed.
-struct BrickSums {
-  uint64_t labels = 0, certainties = 0;
-  world::Timestamp seen;  // the latest
+CertaintyPart certaintiesOf(const std::vector<BelievedCell>& cells, Detail detail) {
+  CertaintyPart part;
+  part.cells.reserve(cells.size());
+  for (const BelievedCell& c : cells)
+    part.cells.push_back({c.cell, certaintySteps(c.certainty, detail), surpriseSteps(c.surprise)});
+  return part;
+}
+
+// A whole belief, in bricks.
+class WholeBricks final : public BelievedBricks {
+ public:
+  explicit WholeBricks(const LocalBelief& belief) {
+    ByBrick<std::vector<BelievedCell>> bricks;
+    for (const BelievedCell& c : belief.cells) bricks.of(c.cell).push_back(c);
+    bricks_ = std::move(bricks.values());
+  }
+  std::vector<BelievedCell> cellsOf(const Brick& brick) const override {
+    const auto found = bricks_.find(brick);
+    return found == bricks_.end() ? std::vector<BelievedCell>{} : found->second;
+  }
+  std::optional<Brick> after(const std::optional<Brick>& brick) const override {
+    const auto next = brick ? bricks_.upper_bound(*brick) : bricks_.begin();
+    if (next == bricks_.end()) return std::nullopt;
+    return next->first;
+  }
+  const std::map<Brick, std::vector<BelievedCell>>& all() const { return bricks_; }
+
+ private:
+  std::map<Brick, std::vector<BelievedCell>> bricks_;
 };
 
-std::map<Brick, BrickSums> sumsOf(const LocalBelief& belief) {
-  ByBrick<BrickSums> bricks;
-  for (const BelievedCell& c : belief.cells) {
-    BrickSums& sums = bricks.of(c.cell);
+// What a brick holds, as sums over its cells, of labels and of certainties: as good as the content itself for
+// seeing that it has changed.
+using BrickSums = std::array<uint64_t, 2>;
+
+uint64_t sumOf(PieceKind kind, const BrickSums& sums) { return sums[kind == PieceKind::kBrick ? 0 : 1]; }
+
+BrickSums sumsOf(const std::vector<BelievedCell>& cells, Detail detail) {
+  BrickSums sums{};
+  for (const BelievedCell& c : cells) {
     const auto place = static_cast<uint64_t>((c.cell.x & 15) << 8 | (c.cell.y & 15) << 4 | (c.cell.z & 15));
     const auto topic = static_cast<uint64_t>(static_cast<uint32_t>(number(c.topic)));
-    sums.labels += hashCombine(place << 32 | topic, static_cast<uint64_t>(c.seen.us));
-    sums.certainties += mix64(place << 32 | uint64_t{certaintySteps(c.certainty, belief.detail)} << 8 |
-                              surpriseSteps(c.surprise));
-    sums.seen = std::max(sums.seen, c.seen);
+    sums[0] += hashCombine(place << 32 | topic, static_cast<uint64_t>(c.seen.us));
+    sums[1] +=
+        mix64(place << 32 | uint64_t{certaintySteps(c.certainty, detail)} << 8 | surpriseSteps(c.surprise));
   }
-  return std::move(bricks.values());
+  return sums;
 }
+
+Piece brickPiece(const LocalBelief& belief, const PieceKey& key, const std::vector<BelievedCell>& cells) {
+  Piece piece{.key = key, .version = belief.version, .content = {}};
+  if (key.kind == PieceKind::kBrick) {
+    piece.content = labelsOf(cells);
+  } else {
+    piece.content = certaintiesOf(cells, belief.detail);
+  }
+  return piece;
+}
+
+constexpr std::array kBrickKinds = {PieceKind::kBrick, PieceKind::kCertainty};
 
 uint64_t hashOf(Piece piece) {
   piece.version = {};
@@ -117,8 +122,11 @@ uint64_t hashOf(Piece piece) {
 
 std::vector<Piece> wholePieces(const LocalBelief& belief) {
   std::vector<Piece> pieces = topicPieces(belief);
-  for (Piece& piece : brickPieces(belief, [](const PieceKey&) { return true; }))
-    pieces.push_back(std::move(piece));
+  const WholeBricks bricks(belief);
+  for (const PieceKind kind : kBrickKinds) {
+    for (const auto& [brick, cells] : bricks.all())
+      pieces.push_back(brickPiece(belief, {belief.robot, kind, brick}, cells));
+  }
   return pieces;
 }
 
@@ -135,7 +143,8 @@ std::vector<Piece> BeliefChanges::changedTopics(const LocalBelief& belief) {
   }
   const std::vector<int32_t> group_sizes = groupSizes(belief);
   for (auto& [key, told] : told_) {
-    if (key.kind != PieceKind::kTopic || told.hash == 0 || there.contains(key)) continue;
+    if (key.kind != PieceKind::kTopic) break;  // topics come first
+    if (told.hash == 0 || there.contains(key)) continue;
     told.hash = 0;  // retired
     changed.push_back({.key = key, .version = belief.version, .content = TopicPart{{0}, 0, group_sizes, {}}});
   }
@@ -143,62 +152,144 @@ std::vector<Piece> BeliefChanges::changedTopics(const LocalBelief& belief) {
   return changed;
 }
 
-std::vector<Piece> BeliefChanges::update(const LocalBelief& belief, size_t most_bricks) {
-  std::vector<Piece> changed = changedTopics(belief);
+// One look at some of the bricks.
+class BeliefChanges::Round {
+ public:
+  Round(BeliefChanges& changes, const LocalBelief& outline, const BelievedBricks& bricks)
+      : changes_(changes), outline_(outline), bricks_(bricks) {}
 
-  struct Candidate {
-    bool is_old = false;  // not seen since the last call
-    int32_t since = 0;
-    PieceKey key;
-    uint64_t hash = 0;
-  };
-  std::vector<Candidate> candidates;
-  world::Timestamp seen_until = seen_until_;
-  const auto look = [&](PieceKind kind, const Brick& brick, uint64_t hash, bool is_old) {
-    const PieceKey key{belief.robot, kind, brick};
-    Told& told = told_[key];
-    if (told.hash == hash) {
-      told.since = kNotWaiting;
-      return;
+  // Finds out whether a brick has changed. Returns its number of cells, 0 when it was looked at before.
+  size_t look(const Brick& brick) {
+    const auto [looked, is_first] = looked_.try_emplace(brick);
+    if (!is_first) return 0;
+    looked->second.cells = bricks_.cellsOf(brick);
+    looked->second.sums = sumsOf(looked->second.cells, outline_.detail);
+    for (const PieceKind kind : kBrickKinds) {
+      const PieceKey key{outline_.robot, kind, brick};
+      Told& told = changes_.told_[key];
+      const bool differs = told.hash != sumOf(kind, looked->second.sums);
+      if (differs == (told.since != kNotWaiting)) continue;
+      if (!differs) changes_.waiting_.erase({told.since, key});
+      told.since = differs ? outline_.version.observation : kNotWaiting;
+      if (differs) changes_.waiting_.emplace(told.since, key);
     }
-    if (told.since == kNotWaiting) told.since = belief.version.observation;
-    candidates.push_back({is_old, told.since, key, hash});
+    return looked->second.cells.size();
+  }
+
+  // Of those that were found to differ at most so many, as if told. First those of `first`, which were looked
+  // at, then those that have waited longest; ascending.
+  std::set<PieceKey> choose(const std::set<Brick>& first, size_t most) {
+    std::set<std::pair<int32_t, PieceKey>> waiting;
+    for (const Brick& brick : first) {
+      for (const PieceKind kind : kBrickKinds) {
+        const PieceKey key{outline_.robot, kind, brick};
+        const int32_t since = changes_.told_[key].since;
+        if (since != kNotWaiting) waiting.emplace(since, key);
+      }
+    }
+    std::set<PieceKey> chosen;
+    for (const auto& [since, key] : waiting) {
+      if (chosen.size() < most) choose(key, chosen);
+    }
+    while (chosen.size() < most && !changes_.waiting_.empty()) {
+      const PieceKey key = changes_.waiting_.begin()->second;
+      look(key.index);  // it may be again as it was told, and waits no longer
+      if (changes_.told_[key].since != kNotWaiting) choose(key, chosen);
+    }
+    return chosen;
+  }
+
+  // As they were when looked at.
+  const std::vector<BelievedCell>& cellsOf(const Brick& brick) const { return looked_.at(brick).cells; }
+
+ private:
+  struct Looked {
+    std::array<uint64_t, 2> sums{};
+    std::vector<BelievedCell> cells;
   };
-  for (const auto& [brick, sums] : sumsOf(belief)) {
-    const bool is_old = sums.seen <= seen_until_;
-    look(PieceKind::kBrick, brick, sums.labels, is_old);
-    look(PieceKind::kCertainty, brick, sums.certainties, is_old);
-    seen_until = std::max(seen_until, sums.seen);
+
+  void choose(const PieceKey& key, std::set<PieceKey>& chosen) {
+    Told& told = changes_.told_[key];
+    changes_.waiting_.erase({told.since, key});
+    told = {sumOf(key.kind, looked_.at(key.index).sums), kNotWaiting};
+    chosen.insert(key);
+  }
+
+  BeliefChanges& changes_;
+  const LocalBelief& outline_;
+  const BelievedBricks& bricks_;
+  std::map<Brick, Looked> looked_;
+};
+
+std::vector<Piece> BeliefChanges::update(const LocalBelief& belief, size_t most_bricks) {
+  const WholeBricks bricks(belief);
+  std::set<Brick> seen;
+  world::Timestamp seen_until = seen_until_;
+  for (const auto& [brick, cells] : bricks.all()) {
+    for (const BelievedCell& c : cells) {
+      if (c.seen > seen_until_) seen.insert(brick);
+      seen_until = std::max(seen_until, c.seen);
+    }
   }
   seen_until_ = seen_until;
+  return update(belief, bricks, seen, most_bricks, kAll);
+}
 
-  if (candidates.size() > most_bricks) {
-    std::ranges::sort(candidates, {},
-                      [](const Candidate& c) { return std::tuple(c.is_old, c.since, c.key); });
-    candidates.resize(most_bricks);
+std::vector<Piece> BeliefChanges::update(const LocalBelief& outline, const BelievedBricks& bricks,
+                                         const std::set<Brick>& seen, size_t most_bricks, size_t most_cells) {
+  std::vector<Piece> changed = changedTopics(outline);
+  Round round(*this, outline, bricks);
+  for (const Brick& brick : seen) round.look(brick);
+  const std::optional<Brick> begun_at = looked_until_;
+  bool has_wrapped = false;
+  for (size_t num_looked = 0; num_looked < most_cells;) {
+    std::optional<Brick> next = bricks.after(looked_until_);
+    if (!next && !has_wrapped && begun_at) {
+      has_wrapped = true;
+      next = bricks.after(std::nullopt);
+    }
+    if (!next || (has_wrapped && *next > *begun_at)) break;
+    num_looked += round.look(*next);
+    looked_until_ = next;
   }
-  std::set<PieceKey> told_now;
-  for (const Candidate& c : candidates) {
-    told_[c.key] = {c.hash, kNotWaiting};
-    told_now.insert(c.key);
-  }
-  for (Piece& piece : brickPieces(belief, [&](const PieceKey& key) { return told_now.contains(key); }))
-    changed.push_back(std::move(piece));
+  const std::set<PieceKey> told = round.choose(seen, most_bricks);
+  for (const PieceKey& key : told) changed.push_back(brickPiece(outline, key, round.cellsOf(key.index)));
   return changed;
 }
 
 std::vector<BeliefChanges::Waiting> BeliefChanges::waiting() const {
   std::vector<Waiting> waiting;
-  for (const auto& [key, told] : told_) {
-    if (told.since != kNotWaiting) waiting.push_back({key, told.hash, told.since});
-  }
+  for (const auto& [since, key] : waiting_) waiting.push_back({key, told_.at(key).hash, since});
+  std::ranges::sort(waiting, {}, &Waiting::key);
   return waiting;
 }
 
-void BeliefChanges::restore(const LocalBelief& belief, const std::vector<Waiting>& waiting) {
+std::vector<BeliefChanges::Waiting> BeliefChanges::waiting(const LocalBelief& outline,
+                                                           const BelievedBricks& bricks) const {
+  std::vector<Waiting> waiting;
+  for (std::optional<Brick> brick = bricks.after({}); brick; brick = bricks.after(brick)) {
+    const BrickSums sums = sumsOf(bricks.cellsOf(*brick), outline.detail);
+    for (const PieceKind kind : kBrickKinds) {
+      const PieceKey key{outline.robot, kind, *brick};
+      const auto found = told_.find(key);
+      const Told told = found == told_.end() ? Told{} : found->second;
+      if (told.hash != sumOf(kind, sums) || told.since != kNotWaiting)
+        waiting.push_back({key, told.hash, told.since});
+    }
+  }
+  std::ranges::sort(waiting, {}, &Waiting::key);
+  return waiting;
+}
+
+void BeliefChanges::restore(const LocalBelief& belief, const std::vector<Waiting>& waiting,
+                            const std::optional<Brick>& looked_until) {
   *this = {};
   update(belief);
-  for (const Waiting& w : waiting) told_[w.key] = {w.told_hash, w.since};
+  looked_until_ = looked_until;
+  for (const Waiting& w : waiting) {
+    told_[w.key] = {w.told_hash, w.since};
+    if (w.since != kNotWaiting) waiting_.emplace(w.since, w.key);
+  }
 }
 
 }  // namespace shoal::mapping

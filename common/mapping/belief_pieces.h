@@ -4,8 +4,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
+#include <set>
+#include <utility>
 #include <vector>
 
+#include "shoal/mapping/believed_bricks.h"
 #include "shoal/mapping/local_belief.h"
 #include "shoal/mapping/piece.h"
 
@@ -23,7 +27,7 @@ class BeliefChanges {
   struct Waiting {
     PieceKey key;
     uint64_t told_hash = 0;  ///< of what was told of it last; 0: nothing
-    int32_t since = 0;       ///< the observation at which it began to wait
+    int32_t since = 0;       ///< the observation at which it began to wait, or kNotWaiting
     bool operator==(const Waiting&) const = default;
   };
   static constexpr size_t kAll = ~size_t{0};
@@ -38,21 +42,44 @@ class BeliefChanges {
   /// Cost: O(cells) to find out, a few nanoseconds each; what is told, all that it holds.
   std::vector<Piece> update(const LocalBelief& belief, size_t most_bricks = kAll);
 
-  /// Ascending by key.
+  /// The same of a belief of any size at a bounded cost. Looked at are the bricks that were seen since the
+  /// last call, those whose turn it is to be told, and of the others so many, in turn, as have `most_cells`
+  /// cells in all: that one of those has changed is found out when its turn has come. What is told of a brick
+  /// is what is believed now. A map of up to `most_cells` cells is looked at as a whole, and told as by the
+  /// function above.
+  ///
+  /// @param outline  the belief; its cells are not looked at.
+  /// @param seen     the bricks of which cells were seen since the last call.
+  /// Cost: O(cells of the bricks looked at + log of the bricks there are).
+  std::vector<Piece> update(const LocalBelief& outline, const BelievedBricks& bricks,
+                            const std::set<Brick>& seen, size_t most_bricks, size_t most_cells);
+
+  /// What differs from what was told, and what was found to differ, ascending by key; when all of the belief
+  /// was looked at: what was found.
   std::vector<Waiting> waiting() const;
+  /// @param outline, bricks  the belief of the last call. Cost: O(cells).
+  std::vector<Waiting> waiting(const LocalBelief& outline, const BelievedBricks& bricks) const;
+
+  /// The brick at which the turn of those looked at has arrived.
+  const std::optional<Brick>& lookedUntil() const { return looked_until_; }
 
   /// As if all of `belief` had just been told but these.
-  void restore(const LocalBelief& belief, const std::vector<Waiting>& waiting);
+  void restore(const LocalBelief& belief, const std::vector<Waiting>& waiting,
+               const std::optional<Brick>& looked_until = {});
+
+  static constexpr int32_t kNotWaiting = -1;  ///< since: nobody has found out yet
 
  private:
   struct Told {
     uint64_t hash = 0;  // of the content alone, version left out
     int32_t since = kNotWaiting;
   };
-  static constexpr int32_t kNotWaiting = -1;
+  class Round;
   std::vector<Piece> changedTopics(const LocalBelief& belief);
 
   std::map<PieceKey, Told> told_;
+  std::set<std::pair<int32_t, PieceKey>> waiting_;  // of bricks, by since
+  std::optional<Brick> looked_until_;
   world::Timestamp seen_until_;  // by the belief before
 };
 

@@ -26,16 +26,22 @@ bool areNear(const world::CellIndex& a, const world::CellIndex& b) {
 // By an eighth.
 bool isClearlyBetter(int32_t score, int32_t held) { return 8 * int64_t{score} > 9 * int64_t{held}; }
 
-const mapping::BelievedCell* find(const mapping::LocalBelief& belief, const world::CellIndex& cell) {
+std::optional<mapping::BelievedCell> find(const mapping::LocalBelief& belief, const world::CellIndex& cell) {
   const auto found = std::ranges::lower_bound(belief.cells, cell, {}, &mapping::BelievedCell::cell);
-  return found != belief.cells.end() && found->cell == cell ? &*found : nullptr;
+  if (found == belief.cells.end() || found->cell != cell) return std::nullopt;
+  return *found;
 }
 
 }  // namespace
 
 void ExampleBook::look(const world::Observation& observation, const world::WordsInCells& words,
                        const mapping::LocalBelief& belief) {
-  const Look look{observation, belief, Typicality(belief)};
+  look(observation, words, belief, [&](const world::CellIndex& cell) { return find(belief, cell); });
+}
+
+void ExampleBook::look(const world::Observation& observation, const world::WordsInCells& words,
+                       const mapping::LocalBelief& belief, const CellBelief& believed) {
+  const Look look{observation, belief, believed, Typicality(belief)};
   for (const mapping::BelievedTopic& topic : belief.topics) pages_.try_emplace(topic.id);
   for (auto& [topic, page] : pages_) {
     if (std::ranges::binary_search(belief.topics, topic, {}, &mapping::BelievedTopic::id)) {
@@ -57,8 +63,8 @@ void ExampleBook::look(const world::Observation& observation, const world::Words
 int32_t ExampleBook::score(const Look& look, const std::vector<world::WordCount>& words,
                            const world::CellIndex& cell, world::TopicId topic) const {
   const int32_t typical = look.typicality.of(words, topic);
-  const mapping::BelievedCell* believed = find(look.belief, cell);
-  if (believed == nullptr || believed->topic != topic) return typical / 4;
+  const auto believed = look.believed(cell);
+  if (!believed || believed->topic != topic) return typical / 4;
   const auto sure = static_cast<int32_t>(
       std::lround(std::clamp(believed->certainty, 0.f, 1.f) * float{mapping::kCertaintySteps}));
   return static_cast<int32_t>(int64_t{typical} * (mapping::kCertaintySteps + sure) /
@@ -70,8 +76,8 @@ void ExampleBook::rescore(const Look& look, world::TopicId topic, Page& page) co
     slot.picture.score = score(look, slot.picture.words, slot.picture.cell, topic);
   }
   std::erase_if(page.spares, [&](const Picture& spare) {
-    const mapping::BelievedCell* believed = find(look.belief, spare.cell);
-    return believed == nullptr || believed->topic != topic;
+    const auto believed = look.believed(spare.cell);
+    return !believed || believed->topic != topic;
   });
   for (Picture& spare : page.spares) spare.score = score(look, spare.words, spare.cell, topic);
   std::ranges::sort(page.spares, [](const Picture& a, const Picture& b) {
@@ -88,8 +94,8 @@ void ExampleBook::collect(const Look& look, const world::WordsInCells& words) {
   };
   std::map<world::TopicId, Best> best;
   for (const world::CellWords& seen : words.cells) {
-    const mapping::BelievedCell* believed = find(look.belief, seen.cell);
-    if (believed == nullptr) continue;
+    const auto believed = look.believed(seen.cell);
+    if (!believed) continue;
     const auto page = pages_.find(believed->topic);
     if (page == pages_.end()) continue;
     Best& held = best[believed->topic];

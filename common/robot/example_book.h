@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
@@ -34,6 +35,13 @@ class ExampleBook {
   void look(const world::Observation& observation, const world::WordsInCells& words,
             const mapping::LocalBelief& belief);
 
+  /// The same, of a belief whose cells are asked for one by one: what is believed of a cell, nothing when it
+  /// is unknown. A look asks for those of the image, and four a topic. @param outline  the belief; its cells
+  /// are not looked at.
+  using CellBelief = std::function<std::optional<mapping::BelievedCell>(const world::CellIndex&)>;
+  void look(const world::Observation& observation, const world::WordsInCells& words,
+            const mapping::LocalBelief& outline, const CellBelief& believed);
+
   /// Ascending by topic, then number; those of topics that are gone have no pixels.
   std::vector<mapping::ExamplePicture> examples() const;
 
@@ -61,7 +69,8 @@ class ExampleBook {
   };
   struct Look {
     const world::Observation& observation;
-    const mapping::LocalBelief& belief;
+    const mapping::LocalBelief& belief;  // but for its cells
+    const CellBelief& believed;
     Typicality typicality;
   };
   int32_t score(const Look& look, const std::vector<world::WordCount>& words, const world::CellIndex& cell,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "shoal/robot/explorer.h"
 
+#include <algorithm>
 #include <bit>
 #include <chrono>
 #include <stdexcept>
@@ -26,6 +27,10 @@ class Stopwatch {
   Clock::time_point start_ = Clock::now();
 };
 
+mapping::BelievedCell believed(const topics::CellLabel& c) {
+  return {c.cell, c.topic, c.seen, c.certainty, c.surprise};
+}
+
 }  // namespace
 
 Explorer::Explorer(const ExplorerOptions& options)
@@ -45,12 +50,16 @@ void Explorer::observe(const world::Observation& observation) {
   const double words_ms = watch.lapMs();
   learn(words);
   times_.words_ms = words_ms;
-  if (!book_) return;
-  mapping::LocalBelief belief = believe();
   watch.lapMs();
-  book_->look(observation, words, belief);
-  belief.examples = book_->examples();
-  believed_ = std::move(belief);
+  if (!book_) return;
+  const mapping::LocalBelief belief = beliefOf(learner_->outline());
+  times_.belief_ms = watch.lapMs();
+  book_->look(observation, words, belief,
+              [&](const world::CellIndex& cell) -> std::optional<mapping::BelievedCell> {
+                const std::vector<topics::CellLabel> label = learner_->labels({&cell, 1});
+                if (label.empty()) return std::nullopt;
+                return believed(label.front());
+              });
   times_.pictures_ms = watch.lapMs();
 }
 
@@ -58,22 +67,26 @@ void Explorer::learn(const world::WordsInCells& words) {
   SHOAL_DEMAND(words.observation > last_observation_);
   Stopwatch watch;
   learner_->observe(words);
-  believed_.reset();
+  for (const world::CellWords& seen : words.cells) {
+    note(seen.cell);
+    seen_bricks_.insert(mapping::brickOf(seen.cell));
+  }
   times_ = {.words_ms = 0, .topics_ms = watch.lapMs(), .belief_ms = 0, .pictures_ms = 0};
   last_observation_ = words.observation;
   dropped_words_ += words.dropped_words;
 }
 
-mapping::LocalBelief Explorer::belief() const {
-  if (believed_) return *believed_;
-  mapping::LocalBelief belief = believe();
-  if (book_) belief.examples = book_->examples();
-  return belief;
+void Explorer::note(const world::CellIndex& cell) {
+  std::vector<world::CellIndex>& cells = bricks_[mapping::brickOf(cell)];
+  const auto place = std::ranges::lower_bound(cells, cell);
+  if (place == cells.end() || *place != cell) cells.insert(place, cell);
 }
 
-mapping::LocalBelief Explorer::believe() const {
-  Stopwatch watch;
-  topics::Snapshot snapshot = learner_->snapshot();
+mapping::LocalBelief Explorer::belief() const { return beliefOf(learner_->snapshot()); }
+
+mapping::LocalBelief Explorer::outline() const { return beliefOf(learner_->outline()); }
+
+mapping::LocalBelief Explorer::beliefOf(topics::Snapshot&& snapshot) const {
   mapping::LocalBelief belief{.robot = options_.robot,
                               .version = {options_.epoch, last_observation_},
                               .groups = words_->groups(),
@@ -84,11 +97,24 @@ mapping::LocalBelief Explorer::believe() const {
     belief.topics.push_back({topic.id, topic.created, topic.weight, std::move(topic.words)});
   }
   belief.cells.reserve(snapshot.cells.size());
-  for (const topics::CellLabel& c : snapshot.cells) {
-    belief.cells.push_back({c.cell, c.topic, c.seen, c.certainty, c.surprise});
-  }
-  times_.belief_ms = watch.lapMs();
+  for (const topics::CellLabel& c : snapshot.cells) belief.cells.push_back(believed(c));
+  if (book_) belief.examples = book_->examples();
   return belief;
+}
+
+std::vector<mapping::BelievedCell> Explorer::cellsOf(const mapping::Brick& brick) const {
+  const auto found = bricks_.find(brick);
+  if (found == bricks_.end()) return {};
+  std::vector<mapping::BelievedCell> cells;
+  cells.reserve(found->second.size());
+  for (const topics::CellLabel& c : learner_->labels(found->second)) cells.push_back(believed(c));
+  return cells;
+}
+
+std::optional<mapping::Brick> Explorer::after(const std::optional<mapping::Brick>& brick) const {
+  const auto next = brick ? bricks_.upper_bound(*brick) : bricks_.begin();
+  if (next == bricks_.end()) return std::nullopt;
+  return next->first;
 }
 
 std::vector<world::TopicId> Explorer::adopt(const std::vector<topics::AdoptedTopic>& others) {

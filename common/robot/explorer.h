@@ -2,12 +2,16 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "shoal/mapping/believed_bricks.h"
 #include "shoal/mapping/local_belief.h"
 #include "shoal/mapping/piece.h"
 #include "shoal/robot/example_book.h"
@@ -40,7 +44,7 @@ struct StageTimes {
 
 /// One robot's mind: takes observations, learns topics, hands out what it believes. The process and the
 /// in-process experiments run this same code.
-class Explorer {
+class Explorer final : public mapping::BelievedBricks {
  public:
   /// @throws std::invalid_argument for a profile that does not exist or a cell size that is not > 0.
   explicit Explorer(const ExplorerOptions& options);
@@ -54,6 +58,16 @@ class Explorer {
 
   /// What the robot believes now.
   mapping::LocalBelief belief() const;
+
+  /// The same without its cells, which can be had brick by brick: costs the same on every map.
+  mapping::LocalBelief outline() const;
+  std::vector<mapping::BelievedCell> cellsOf(const mapping::Brick& brick) const override;
+  std::optional<mapping::Brick> after(const std::optional<mapping::Brick>& brick) const override;
+
+  /// The bricks of which cells were seen since the last call, or since restore().
+  std::set<mapping::Brick> takeSeenBricks() { return std::exchange(seen_bricks_, {}); }
+
+  int32_t numCells() const { return learner_->numCells(); }
 
   /// Learns from others' topics as well as from its own words: TopicModel::adopt().
   /// @throws std::invalid_argument unless the robot labels every word, as profile "paper" does.
@@ -81,18 +95,20 @@ class Explorer {
   const StageTimes& lastTimes() const { return times_; }
 
  private:
-  mapping::LocalBelief believe() const;
+  mapping::LocalBelief beliefOf(topics::Snapshot&& snapshot) const;
+  void note(const world::CellIndex& cell);
 
   ExplorerOptions options_;
   std::unique_ptr<vision::WordExtractor> words_;
   world::Grid grid_;
   topics::LearnerHyperparameters hyperparameters_;
   std::unique_ptr<topics::Learner> learner_;
-  std::optional<ExampleBook> book_;               // when it keeps pictures
-  std::optional<mapping::LocalBelief> believed_;  // of the last observation, when the book has seen it
+  std::optional<ExampleBook> book_;                                 // when it keeps pictures
+  std::map<mapping::Brick, std::vector<world::CellIndex>> bricks_;  // ascending
+  std::set<mapping::Brick> seen_bricks_;
   int32_t last_observation_ = -1;
   int64_t dropped_words_ = 0;
-  mutable StageTimes times_;  // measured, never part of a result
+  StageTimes times_;  // measured, never part of a result
 };
 
 }  // namespace shoal::robot

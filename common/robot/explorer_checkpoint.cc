@@ -51,7 +51,9 @@ void Explorer::restore(std::span<const uint8_t> checkpoint) {
   }
   learner_ = std::move(learner);
   book_ = std::move(book);
-  believed_.reset();
+  bricks_.clear();
+  for (const topics::CellLabel& c : learner_->snapshot().cells) note(c.cell);
+  seen_bricks_.clear();
   last_observation_ = last_observation;
   dropped_words_ = dropped_words;
 }

@@ -258,12 +258,31 @@ Snapshot CellLabelModel::snapshot() const {
   Snapshot snapshot{counts_.vocabularySize(), topics(), {}};
   snapshot.cells.reserve(cells_.size());
   const std::vector<int32_t> told = toldAs();
-  for (const LabelledCell& cell : cells_) {
-    snapshot.cells.push_back({cell.index, slots_.id(told[static_cast<size_t>(toldSlot(cell))]),
-                              cell.certainty, cell.surprise, cell.seen_observation, cell.seen});
-  }
+  for (const LabelledCell& cell : cells_) snapshot.cells.push_back(labelOf(cell, told));
   std::ranges::sort(snapshot.cells, {}, &CellLabel::cell);
   return snapshot;
+}
+
+Snapshot CellLabelModel::outline() const { return {counts_.vocabularySize(), topics(), {}}; }
+
+std::vector<CellLabel> CellLabelModel::labels(std::span<const world::CellIndex> cells) const {
+  const std::vector<int32_t> told = toldAs();
+  std::vector<CellLabel> labels;
+  labels.reserve(cells.size());
+  for (const world::CellIndex& cell : cells) {
+    if (const auto c = neighborhood_.find(cell))
+      labels.push_back(labelOf(cells_[static_cast<size_t>(*c)], told));
+  }
+  return labels;
+}
+
+CellLabel CellLabelModel::labelOf(const LabelledCell& cell, const std::vector<int32_t>& told_as) const {
+  return {cell.index,
+          slots_.id(told_as[static_cast<size_t>(toldSlot(cell))]),
+          cell.certainty,
+          cell.surprise,
+          cell.seen_observation,
+          cell.seen};
 }
 
 std::vector<world::TopicId> CellLabelModel::drawnTopics() const {

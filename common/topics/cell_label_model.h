@@ -83,6 +83,8 @@ class CellLabelModel final : public Learner {
   ///
   /// Cost: O(V K + cells log cells).
   Snapshot snapshot() const override;
+  Snapshot outline() const override;
+  std::vector<CellLabel> labels(std::span<const world::CellIndex> cells) const override;
 
   /// The topic of the label that was drawn last for each cell, cells as in snapshot(): the state of the
   /// chain, whose words a topic's counts are. snapshot() tells the likeliest instead.
@@ -136,6 +138,7 @@ class CellLabelModel final : public Learner {
   void relabel(LabelledCell& cell, int32_t slot);
   void tell(int32_t c);
   int32_t toldSlot(const LabelledCell& cell) const;
+  CellLabel labelOf(const LabelledCell& cell, const std::vector<int32_t>& told_as) const;
   void findTwins();
   void leaveTwins(int32_t slot);
   std::vector<int32_t> toldAs() const;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "shoal/topics/snapshot.h"
@@ -21,8 +22,14 @@ class Learner {
   ///         observation number is not above the last one's.
   virtual void observe(const world::WordsInCells& words) = 0;
 
-  /// Topics as exact counts, every cell with its label. The only call that reads everything.
+  /// Topics as exact counts, every cell with its label. It reads everything.
   virtual Snapshot snapshot() const = 0;
+
+  /// snapshot() without its cells: costs the same on every map.
+  virtual Snapshot outline() const = 0;
+
+  /// What snapshot() says of these cells, in their order; those not known are left out.
+  virtual std::vector<CellLabel> labels(std::span<const world::CellIndex> cells) const = 0;
 
   /// The whole state as bytes: what is resumed from them (resumeLearner()) goes on as this learner does, byte
   /// for byte.

@@ -32,6 +32,12 @@ int32_t Neighborhood::insert(const world::CellIndex& cell) {
   return number;
 }
 
+std::optional<int32_t> Neighborhood::find(const world::CellIndex& cell) const {
+  const auto found = number_of_.find(cell);
+  if (found == number_of_.end()) return std::nullopt;
+  return found->second;
+}
+
 std::vector<int32_t> Neighborhood::around(const world::CellIndex& cell) const {
   std::vector<int32_t> known;
   const auto add = [&](const world::CellIndex& other) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -21,6 +22,9 @@ class Neighborhood {
  public:
   /// Number of the cell, created and linked if it is new.
   int32_t insert(const world::CellIndex& cell);
+
+  /// Number of a known cell; nothing for another.
+  std::optional<int32_t> find(const world::CellIndex& cell) const;
 
   /// Numbers of the known ones among a cell, itself known or not, and those that adjoin it.
   std::vector<int32_t> around(const world::CellIndex& cell) const;

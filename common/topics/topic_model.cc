@@ -148,6 +148,18 @@ Snapshot TopicModel::snapshot() const {
   return snapshot;
 }
 
+Snapshot TopicModel::outline() const { return {gibbs_.vocabularySize(), topics(), {}}; }
+
+std::vector<CellLabel> TopicModel::labels(std::span<const world::CellIndex> cells) const {
+  std::vector<CellLabel> labels;
+  labels.reserve(cells.size());
+  std::vector<float> neighbor_counts(neighbor_counts_.size());
+  for (const world::CellIndex& cell : cells) {
+    if (const auto c = neighborhood_.find(cell)) labels.push_back(label(*c, neighbor_counts));
+  }
+  return labels;
+}
+
 std::vector<double> TopicModel::surprise(const world::WordsInCells& words) const {
   check(words, gibbs_.vocabularySize());
   std::vector<double> bits(words.cells.size());

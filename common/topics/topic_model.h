@@ -76,6 +76,8 @@ class TopicModel final : public Learner {
   ///
   /// Cost: O(V K + cells (K + log cells)); about 5 ms for 20 000 cells, V = 15436, K = 12.
   Snapshot snapshot() const override;
+  Snapshot outline() const override;
+  std::vector<CellLabel> labels(std::span<const world::CellIndex> cells) const override;
 
   /// How surprising an image is to the model as it stands, before observe(): of each cell, in order, the mean
   /// over its words of -log2 Σ_k n_k / Σ_j n_j · (n_kw + β) / (n_k + Vβ), bits per word; 0 while nothing was

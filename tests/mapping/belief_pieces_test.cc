@@ -3,7 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <optional>
+#include <set>
+#include <vector>
 
 #include "shoal/mapping/belief_store.h"
 #include "shoal/random.h"
@@ -203,6 +207,130 @@ TEST(BeliefChangesTest, ResumingEqualsNeverHavingStopped) {
       BeliefChanges unbroken = changes;
       const size_t most = random.below(40);
       EXPECT_EQ(resumed.update(b, most), unbroken.update(b, most));
+    }
+    for (const Piece& piece : changes.update(b)) store.apply(piece);
+    for (const Piece& whole : wholePieces(b)) {  // nothing is left out in the end
+      const Piece* held = store.find(whole.key, 0);
+      ASSERT_NE(held, nullptr);
+      EXPECT_EQ(held->content, whole.content);
+    }
+  }
+}
+
+// Looks through all cells for each question.
+class BricksOf final : public BelievedBricks {
+ public:
+  explicit BricksOf(const LocalBelief& belief) : belief_(belief) {}
+  std::vector<BelievedCell> cellsOf(const Brick& brick) const override {
+    ++num_given_;
+    std::vector<BelievedCell> cells;
+    for (const BelievedCell& c : belief_.cells)
+      if (brickOf(c.cell) == brick) cells.push_back(c);
+    return cells;
+  }
+  std::optional<Brick> after(const std::optional<Brick>& brick) const override {
+    std::optional<Brick> least;
+    for (const BelievedCell& c : belief_.cells) {
+      const Brick other = brickOf(c.cell);
+      if ((!brick || other > *brick) && (!least || other < *least)) least = other;
+    }
+    return least;
+  }
+  size_t numGiven() const { return num_given_; }  // bricks, which have one cell each in a row()
+
+ private:
+  const LocalBelief& belief_;
+  mutable size_t num_given_ = 0;
+};
+
+LocalBelief outlineOf(LocalBelief belief) {
+  belief.cells.clear();
+  return belief;
+}
+
+std::set<Brick> seenIn(const LocalBelief& belief, world::Timestamp since) {
+  std::set<Brick> seen;
+  for (const BelievedCell& c : belief.cells)
+    if (c.seen > since) seen.insert(brickOf(c.cell));
+  return seen;
+}
+
+world::Timestamp latestIn(const LocalBelief& belief) {
+  world::Timestamp latest;
+  for (const BelievedCell& c : belief.cells) latest = std::max(latest, c.seen);
+  return latest;
+}
+
+TEST(BeliefChangesTest, BrickByBrickTellsASmallMapAsAWhole) {
+  for (uint64_t seed = 0; seed < 20; ++seed) {
+    Random random(seed);
+    BeliefChanges whole, by_brick;
+    LocalBelief b = row(0, 0, 0);
+    world::Timestamp seen_until;
+    for (int step = 0; step < 30; ++step) {
+      const size_t most = 1 + random.below(30);
+      const auto told = whole.update(b, most);
+      EXPECT_EQ(by_brick.update(outlineOf(b), BricksOf(b), seenIn(b, seen_until), most, b.cells.size()),
+                told);
+      EXPECT_EQ(by_brick.waiting(), whole.waiting());
+      EXPECT_EQ(by_brick.waiting(outlineOf(b), BricksOf(b)), whole.waiting());
+      seen_until = latestIn(b);
+      b = mutated(b, random);
+      if (random.below(2) == 0) {
+        b.cells.push_back({{16 * (40 + step), 0, 0}, world::TopicId{0}, latestIn(b), 0.5f});
+        b.cells.back().seen.us += 1;
+      }
+    }
+  }
+}
+
+TEST(BeliefChangesTest, ALookAtALargeMapIsBoundedAndMissesNothing) {
+  constexpr size_t kMostBricks = 6, kMostCells = 5, kBricks = 40;
+  BeliefChanges changes;
+  BeliefStore store;
+  LocalBelief b = row(0, 0, 0);
+  for (const Piece& piece : changes.update(b)) store.apply(piece);
+  b = row(1, 0, 40);  // all of it, and nothing is seen
+  for (size_t call = 0; call < kBricks / kMostCells; ++call) {
+    const BricksOf bricks(b);
+    const auto told = changes.update(outlineOf(b), bricks, {}, kMostBricks, kMostCells);
+    EXPECT_EQ(told.size(), kMostCells);  // of each brick the labels
+    EXPECT_LE(bricks.numGiven(), kMostCells + kMostBricks);
+    for (const Piece& piece : told) store.apply(piece);
+    ++b.version.observation;
+  }
+  for (const Piece& whole : wholePieces(b)) {
+    const Piece* held = store.find(whole.key, 0);
+    ASSERT_NE(held, nullptr);
+    EXPECT_EQ(held->content, whole.content);
+  }
+  b.cells[7].topic = world::TopicId{0};
+  b.cells[7].seen.us += 5000;
+  EXPECT_EQ(bricksOf(changes.update(outlineOf(b), BricksOf(b), {Brick{7, 0, 0}}, 1, 0)),
+            (std::vector<int32_t>{7}));
+}
+
+TEST(BeliefChangesTest, ResumingAmidALookEqualsNeverHavingStopped) {
+  for (uint64_t seed = 0; seed < 20; ++seed) {
+    Random random(seed);
+    BeliefChanges changes;
+    BeliefStore store;
+    LocalBelief b = row(0, 0, 0);
+    world::Timestamp seen_until;
+    for (int step = 0; step < 30; ++step) {
+      const auto told = changes.update(outlineOf(b), BricksOf(b), seenIn(b, seen_until), 1 + random.below(9),
+                                       random.below(12));
+      for (const Piece& piece : told) store.apply(piece);
+      BeliefChanges resumed;
+      resumed.restore(b, changes.waiting(outlineOf(b), BricksOf(b)), changes.lookedUntil());
+      seen_until = latestIn(b);
+      b = mutated(b, random);
+      BeliefChanges unbroken = changes;
+      for (int more = 0; more < 3; ++more) {
+        const size_t most = random.below(9), most_cells = random.below(12);
+        EXPECT_EQ(resumed.update(outlineOf(b), BricksOf(b), seenIn(b, seen_until), most, most_cells),
+                  unbroken.update(outlineOf(b), BricksOf(b), seenIn(b, seen_until), most, most_cells));
+      }
     }
     for (const Piece& piece : changes.update(b)) store.apply(piece);
     for (const Piece& whole : wholePieces(b)) {  // nothing is left out in the end

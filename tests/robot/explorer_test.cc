@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "shoal/robot/explorer.h"
 
+#include <map>
 #include <numeric>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -74,6 +76,34 @@ TEST_P(EveryExplorer, EveryLabelIsATopicAndEveryWeightTheSumOfItsWords) {
   for (const mapping::BelievedCell& c : belief.cells) {
     EXPECT_NE(std::ranges::find(belief.topics, c.topic, &mapping::BelievedTopic::id), belief.topics.end());
   }
+}
+
+TEST_P(EveryExplorer, BrickByBrickItBelievesTheSame) {
+  const auto images = twoImages();
+  Explorer explorer(options());
+  explorer.observe(images[0]);
+  std::set<mapping::Brick> first;
+  for (const mapping::BelievedCell& c : explorer.belief().cells) first.insert(mapping::brickOf(c.cell));
+  EXPECT_EQ(explorer.takeSeenBricks(), first);
+  EXPECT_TRUE(explorer.takeSeenBricks().empty());
+  explorer.observe(images[1]);
+  Explorer resumed(options());
+  resumed.restore(explorer.checkpoint());
+  for (const Explorer* const each : {&explorer, &resumed}) {
+    const mapping::LocalBelief belief = each->belief(), outline = each->outline();
+    EXPECT_EQ(outline.topics, belief.topics);
+    EXPECT_EQ(outline.version, belief.version);
+    EXPECT_TRUE(outline.cells.empty());
+    std::map<mapping::Brick, std::vector<mapping::BelievedCell>> expected, bricks;
+    for (const mapping::BelievedCell& c : belief.cells) expected[mapping::brickOf(c.cell)].push_back(c);
+    for (auto brick = each->after({}); brick; brick = each->after(brick))
+      bricks[*brick] = each->cellsOf(*brick);
+    EXPECT_EQ(bricks, expected);
+    EXPECT_TRUE(each->cellsOf({1000, 1000, 1000}).empty());
+    EXPECT_EQ(static_cast<size_t>(each->numCells()), belief.cells.size());
+  }
+  EXPECT_FALSE(explorer.takeSeenBricks().empty());
+  EXPECT_TRUE(resumed.takeSeenBricks().empty());
 }
 
 TEST_P(EveryExplorer, EqualMissionsAreEqualAndSeedsAndRobotsDiffer) {
