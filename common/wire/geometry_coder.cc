@@ -62,7 +62,9 @@ template <typename Coder>
 int GeometryCoder::codePlace(Coder& coder, const CellField& field, const std::array<int, 3>& place,
                              const Around& around, bool alone, bool has_cell, size_t state, int bit) {
   const auto [x, y, z] = place;
-  const auto height = [&](int dx, int dy) { return field.nearestHeight(x + dx, y + dy, z); };
+  const auto height = [&field, x = x, y = y, z = z](int dx, int dy) {
+    return field.nearestHeight(x + dx, y + dy, z);
+  };
   const int h_west = height(-1, 0), h_south = height(0, -1), h_southwest = height(-1, -1);
   const int h_west2 = height(-2, 0), h_south2 = height(0, -2);
   const bool knows_west = h_west != kNone, knows_south = h_south != kNone;
