@@ -65,6 +65,7 @@ int64_t imageFingerprint() { return bot_core::image_t::getHash(); }
 int64_t imagesFingerprint() { return bot_core::images_t::getHash(); }
 int64_t poseFingerprint() { return bot_core::pose_t::getHash(); }
 int64_t rigidTransformFingerprint() { return bot_core::rigid_transform_t::getHash(); }
+int64_t vehicleFingerprint() { return vehicle_t::getHash(); }
 
 Result<ImageView> decodeImage(std::span<const uint8_t> bytes) {
   const auto fingerprint = fingerprintOf(bytes);
@@ -134,7 +135,7 @@ Bytes encoded(const Message& message) {
 Result<world::Vehicle> decodeVehicle(std::span<const uint8_t> bytes) {
   const auto fingerprint = fingerprintOf(bytes);
   if (!fingerprint) return fingerprint.error();
-  if (*fingerprint != vehicle_t::getHash()) return DecodeError::kWrongType;
+  if (*fingerprint != vehicleFingerprint()) return DecodeError::kWrongType;
   ByteReader in(bytes.subspan(8));
   const int64_t time_us = int64From(in);
   const float battery = std::bit_cast<float>(static_cast<uint32_t>(in.bigEndian(4)));

@@ -74,5 +74,6 @@ int64_t imageFingerprint();
 int64_t imagesFingerprint();
 int64_t poseFingerprint();
 int64_t rigidTransformFingerprint();
+int64_t vehicleFingerprint();
 
 }  // namespace shoal::wire

@@ -31,9 +31,9 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   }();
   if (!quiet || size < 9) return 0;
   Bytes bytes(data + 1, data + size);
-  constexpr int kTypes = 4;
+  constexpr int kTypes = 5;
   const int64_t fingerprints[kTypes] = {imageFingerprint(), imagesFingerprint(), poseFingerprint(),
-                                        rigidTransformFingerprint()};
+                                        rigidTransformFingerprint(), vehicleFingerprint()};
   const auto fingerprint = static_cast<uint64_t>(fingerprints[data[0] % kTypes]);
   for (size_t i = 0; i < 8; ++i) bytes[i] = static_cast<uint8_t>(fingerprint >> (56 - 8 * i));
   if (const auto image = decodeImage(bytes)) look(*image);
@@ -41,5 +41,10 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     for (const KindAndImage& each : *images) look(each.image);
   }
   if (const auto pose = decodePose(bytes); pose && !pose->isSane()) std::abort();
+  if (const auto vehicle = decodeVehicle(bytes)) {
+    const auto within = [](double value, double most) { return value >= 0 && value <= most; };
+    if (!within(vehicle->battery_percent.value_or(0), 100) || !within(vehicle->depth_m.value_or(0), 20000))
+      std::abort();
+  }
   return 0;
 }
