@@ -47,13 +47,28 @@ void printRow(const Json& n) {
       fmt::format("{}/{}", n["observation"].get<int>() + 1, n["num_observations"].get<int>());
   const std::string told = !flies ? "-" : n["heard_whole"].get<bool>() ? "all" : "part";
   const std::string agreement = n["agreement"];
-  fmt::print("{:<8} {:<7} {:>7.1f} {:>7} {:>6} {:>6} {:>4} {:>4} {:>6} {:>5} {:<4} {}\n",
+  fmt::print("{:<8} {:<7} {:>7.1f} {:>7} {:>6} {:>6} {:>4} {:>4} {:>5} {:>5} {:<4} {}\n",
              n["name"].get<std::string>(), n["phase"].get<std::string>(), n["heard_s"].get<double>(),
              flies ? images : "-", n["topics"].get<int>(), n["cells"].get<int>(), linkQuality(n),
              budgetUsed(n), n["queue_bytes"].get<int>(), timeToClear(n), told,
              agreement == "none"    ? "-"
              : agreement == "other" ? alarming("OTHER")
                                     : agreement);
+}
+
+// Messages that nodes refused, in lines of 80 columns; nothing when there are none.
+void printRefused(const Json& a) {
+  std::string line = "refused:";
+  for (const Json& n : a["nodes"]) {
+    if (n["rejected"].get<int>() == 0) continue;
+    const std::string item = fmt::format(" {} {}", n["name"].get<std::string>(), n["rejected"].get<int>());
+    if (line.size() + item.size() > 80) {
+      fmt::print("{}\n", line);
+      line = std::string(8, ' ');
+    }
+    line += item;
+  }
+  if (line != "refused:") fmt::print("{}\n", line);
 }
 
 // Where everybody is, and what their vehicles say of themselves.
@@ -88,13 +103,10 @@ void print(const Json& a) {
                    ? alarming(", NOT THE ONE THIS NODE WAS GIVEN: " + (*library)["given"].get<std::string>())
                    : "");
   }
-  fmt::print("{:<8} {:<7} {:>7} {:>7} {:>6} {:>6} {:>4} {:>4} {:>6} {:>5} {:<4} {}\n", "node", "phase",
+  fmt::print("{:<8} {:<7} {:>7} {:>7} {:>6} {:>6} {:>4} {:>4} {:>5} {:>5} {:<4} {}\n", "node", "phase",
              "heard s", "images", "topics", "cells", "link", "used", "queue", "clear", "told", "map");
   for (const Json& n : a["nodes"]) printRow(n);
-  for (const Json& n : a["nodes"])
-    if (n["rejected"].get<int>() > 0)
-      fmt::print("{:<8} {} {} messages\n", n["name"].get<std::string>(), alarming("refused"),
-                 n["rejected"].get<int>());
+  printRefused(a);
   for (const Json& m : a["mixed"])
     fmt::print("{:<8} {}: {}\n", m["node"].get<std::string>(), alarming(m["kind"].get<std::string>()),
                m["says"].get<std::string>());
@@ -141,7 +153,7 @@ void addStatusCommand(CLI::App& app, Action& chosen) {
   command->footer(
       "link: percent of the bytes a node sent in its last minute that arrived here. used: bytes sent of\n"
       "what the budget allowed so far. queue: bytes that wait. clear: seconds until they are said, if\n"
-      "nothing new comes. refused: messages that it did not understand, each node a line.\n"
+      "nothing new comes. refused: messages not understood, or too many at once.\n"
       "told: whether all that a robot has to say was heard. map: the same as this one, made of another\n"
       "state (behind), or OTHER though made of the same state: an alarm, unless a recording was asked with\n"
       "another --matcher than the mission's. Below the table: clocks that are off, twins, other missions, "
@@ -149,7 +161,8 @@ void addStatusCommand(CLI::App& app, Action& chosen) {
       "settings, each a line. A stranger speaks without the key that this node has, or with "
       "a\n"
       "key that it lacks.\n\n"
-      "  operator_console status --node state --watch");
+      "  operator_console status --node state --watch\n"
+      "  operator_console status --run runs/a --where");
   command->callback([q, &chosen] {
     chosen = [q] {
       if (q->watch && !q->asking.where.run.empty()) {

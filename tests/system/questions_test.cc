@@ -100,7 +100,7 @@ TEST_F(QuestionsTest, RunAndRecordingAndNodeAnswerAlike) {
 
 TEST_F(QuestionsTest, TablesFitEightyColumns) {
   for (const std::string question :
-       {"status", "labels", "area 4", "why 4", "node R00", "at -2 0", "diff 10 30"}) {
+       {"status", "status --where", "labels", "area 4", "why 4", "node R00", "at -2 0", "diff 10 30"}) {
     const Outcome outcome = console(question + run());
     EXPECT_EQ(outcome.exit_code, 0) << question;
     std::istringstream lines(outcome.output);
