@@ -300,6 +300,11 @@ Json Node::answer(const Json& question) {
   if (query == "ask") return answerAsk(question);
   if (query == "status") return answerStatus();
   if (query == "map" && question.contains("has")) return answerChanges(question);
+  if (query == "matching") {
+    const matching::MatcherOptions& m = state_.matcher();
+    return {
+        {"matcher", m.matcher}, {"similarity", m.similarity}, {"sigma", m.sigma ? Json(*m.sigma) : Json()}};
+  }
   const bool needs_no_cells = query == "pictures" || query == "events";
   const mapping::MissionView known = needs_no_cells ? overview() : view();
   const auto beliefs = [this]() -> const mapping::BeliefStore& { return state_.beliefs(); };

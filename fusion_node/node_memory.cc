@@ -7,6 +7,7 @@
 
 #include "fusion_node/limits.h"
 #include "shoal/comms/channels.h"
+#include "shoal/wire/heartbeat_codec.h"
 #include "shoal/wire/message_kind.h"
 
 namespace shoal::fusion_node {
@@ -55,10 +56,13 @@ void NodeMemory::keep(const comms::Packet& packet, bool is_new) {
   if (packet.channel.ends_with("_HEARTBEAT")) {
     const auto header = wire::peek(packet.bytes);
     if (!header || header->mission != mission_) return;
-    if (!heartbeat_kept_us_.contains(packet.channel) && heartbeat_kept_us_.size() >= kMaxNodes) return;
-    const auto [kept, first] = heartbeat_kept_us_.try_emplace(packet.channel, header->time.us);
-    if (!first && header->time.us - kept->second < kHeartbeatEveryUs) return;
-    kept->second = header->time.us;
+    if (!heartbeat_kept_.contains(packet.channel) && heartbeat_kept_.size() >= kMaxNodes) return;
+    const auto heartbeat = wire::decodeHeartbeat(packet.bytes);
+    const Kept now{header->time.us, heartbeat ? heartbeat->phase : wire::Phase::kFlying};
+    const auto [kept, first] = heartbeat_kept_.try_emplace(packet.channel, now);
+    if (!first && now.time_us - kept->second.time_us < kHeartbeatEveryUs && now.phase == kept->second.phase)
+      return;
+    kept->second = now;
   } else if (!is_new) {
     return;
   }

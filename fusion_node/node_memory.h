@@ -10,6 +10,7 @@
 
 #include "fusion_node/mission_file.h"
 #include "fusion_node/mission_state.h"
+#include "shoal/wire/heartbeat_codec.h"
 
 namespace shoal::fusion_node {
 
@@ -17,10 +18,10 @@ namespace shoal::fusion_node {
 std::string missionFilePath(const std::string& state_dir, int32_t mission);
 
 /// What a node has heard, kept in its state folder as a MissionFile: every message with a piece that was new,
-/// heartbeats now and then, and what happened. What was heard at once is one transaction, which is over
-/// before the node's heartbeat can say that it is held, so a node that is killed at any moment comes back
-/// with all that it has acknowledged. Nothing is thrown away: the file is the mission's history, a few bytes
-/// more than what was heard for the first time.
+/// heartbeats now and then and when a robot lands or leaves, and what happened. What was heard at once is one
+/// transaction, which is over before the node's heartbeat can say that it is held, so a node that is killed
+/// at any moment comes back with all that it has acknowledged. Nothing is thrown away: the file is the
+/// mission's history, a few bytes more than what was heard for the first time.
 class NodeMemory {
  public:
   /// @param node  The node whose memory it is: its heartbeats are kept too, for its clock.
@@ -42,13 +43,18 @@ class NodeMemory {
   void commit(const MissionState& state);
 
  private:
+  struct Kept {
+    int64_t time_us;  // of the mission
+    wire::Phase phase;
+  };
+
   std::string path_;
   std::string node_;
   int32_t mission_;
   MissionFile file_;
-  bool has_kept_ = false;                             // since the last commit
-  std::map<std::string, int64_t> heartbeat_kept_us_;  // by channel: mission time
-  std::optional<mapping::MissionEvent> last_event_;   // that is in the file
+  bool has_kept_ = false;                            // since the last commit
+  std::map<std::string, Kept> heartbeat_kept_;       // by channel: the last one
+  std::optional<mapping::MissionEvent> last_event_;  // that is in the file
 };
 
 }  // namespace shoal::fusion_node

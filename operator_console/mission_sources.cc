@@ -193,19 +193,33 @@ RecordedMission recordingWithEdits(const Where& where) {
   return recorded;
 }
 
+matching::MatcherOptions optionsFrom(const Json& said) {
+  matching::MatcherOptions options;
+  said.at("matcher").get_to(options.matcher);
+  said.at("similarity").get_to(options.similarity);
+  if (!said.at("sigma").is_null()) options.sigma = said.at("sigma").get<double>();
+  return options;
+}
+
+matching::MatcherOptions matcherOfNode(const Where& where) {
+  const Json answer = fusion_node::askNode(where.node, {{"query", "matching"}});
+  try {
+    return optionsFrom(answer);
+  } catch (const Json::exception&) {
+    return where.matcher;  // a node of an older build
+  }
+}
+
 }  // namespace
 
 matching::MatcherOptions matcherOf(const Where& where) {
+  if (!where.node.empty()) return matcherOfNode(where);
   if (where.run.empty()) return where.matcher;
   const Json summary = readSummary(where.run);
   const auto said = summary.find("matching");
   if (said == summary.end()) return where.matcher;  // a run of an older build
   try {
-    matching::MatcherOptions options;
-    said->at("matcher").get_to(options.matcher);
-    said->at("similarity").get_to(options.similarity);
-    if (!said->at("sigma").is_null()) options.sigma = said->at("sigma").get<double>();
-    return options;
+    return optionsFrom(*said);
   } catch (const Json::exception& error) {
     throw std::runtime_error(where.run + "/summary.json: " + error.what());
   }

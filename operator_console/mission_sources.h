@@ -34,7 +34,8 @@ mapping::MissionView viewOf(const Where& where);
 /// Where edits of a finished mission are kept: edits.json in a run's folder, or beside a recording.
 std::string editsPathOf(const Where& where);
 
-/// How the map of a run was matched, as its summary.json says; else what `where` says.
+/// How the map of a run was matched, as its summary.json says; how a node matches; else what `where` says.
+/// @throws std::runtime_error when no node answers.
 matching::MatcherOptions matcherOf(const Where& where);
 
 /// What to look into for the past: --log, the mission.lcmlog of --run, or the newest file of --node.

@@ -50,18 +50,32 @@ void Chronicle::hear(const mapping::NodeStatus& node) {
   life.agreement = node.agreement;
   life.phase = node.phase;
   life.budget = node.budget;
+  const double since_s = is_new ? node.heard_s : life.heard_s;
   life.heard_s = node.heard_s;
   if (node.phase != "node" && node.observation >= 0)
     follow(life, {node.heard_s, node.x_m, node.y_m, node.z_m});
   std::map<std::string, int64_t> sent = node.class_bytes;
   if (sent.empty()) sent["sent"] = node.bytes_sent;
-  auto& bin = life.bins[static_cast<int64_t>(std::floor(node.heard_s / bin_s_))];
   for (const auto& [name, bytes] : sent) {
     const int64_t before = life.sent[name];
-    bin[name] += bytes >= before ? bytes - before : bytes;  // less: it began anew
+    spread(life, name, bytes >= before ? bytes - before : bytes, since_s,
+           node.heard_s);  // less: it began anew
     life.sent[name] = bytes;
   }
   while (life.bins.size() > kMaxBins) coarsen();
+}
+
+// What was sent between two heartbeats, which may be far apart in what a node remembers, was sent evenly.
+void Chronicle::spread(Life& life, const std::string& traffic, int64_t bytes, double since_s,
+                       double until_s) const {
+  const auto last = static_cast<int64_t>(std::floor(until_s / bin_s_));
+  auto bin = std::min(static_cast<int64_t>(std::floor(since_s / bin_s_)) + 1, last);
+  if (last - bin >= static_cast<int64_t>(kMaxBins)) bin = last;
+  for (; bin <= last; ++bin) {
+    const int64_t share = bytes / (last - bin + 1);
+    life.bins[bin][traffic] += share;
+    bytes -= share;
+  }
 }
 
 // Every second point goes when there are many, and from then on every second one is left out.

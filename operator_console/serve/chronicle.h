@@ -55,6 +55,7 @@ class Chronicle {
   };
 
   static void follow(Life& life, const TrackPoint& point);
+  void spread(Life& life, const std::string& traffic, int64_t bytes, double since_s, double until_s) const;
   void coarsen();
 
   std::map<std::string, Life> lives_;

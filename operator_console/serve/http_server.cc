@@ -222,7 +222,7 @@ void HttpServer::Core::ping() {
   std::unique_lock lock(mutex);
   while (!wake.wait_for(lock, kPingEvery, [this] { return stopping; })) {
     lock.unlock();
-    say(": still here\n\n");
+    say(": still here\nevent: ping\ndata: {}\n\n");
     lock.lock();
   }
 }

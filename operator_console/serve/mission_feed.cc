@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "operator_console/serve/mission_feed.h"
 
+#include <sys/resource.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 #include <exception>
 #include <filesystem>
+#include <limits>
 #include <utility>
 
 #include <spdlog/spdlog.h>
 
+#include "fusion_node/node_memory.h"
 #include "fusion_node/query_server.h"
 #include "operator_console/label_pictures.h"
 #include "operator_console/message_log.h"
@@ -29,8 +34,10 @@ constexpr int kLeisure = 4;  // a map is asked for again after 4 times what it t
 constexpr auto kPicturesEvery = std::chrono::seconds(2);
 constexpr auto kEventsEvery = std::chrono::seconds(1);
 constexpr size_t kMaxMoments = 64;      // of a live mission
-constexpr size_t kHistoryMoments = 32;  // of a recording
-constexpr size_t kMostPictures = 64;    // of a label
+constexpr size_t kHistoryMoments = 32;  // of a recording, or of what a node remembers
+constexpr size_t kMostMeanwhile = 100000;
+constexpr double kTold = 0.5e-3;      // times are told in whole milliseconds, and asked for as they were told
+constexpr size_t kMostPictures = 64;  // of a label
 
 double timeOf(const mapping::MissionView& view) {
   double time_s = 0;
@@ -38,21 +45,26 @@ double timeOf(const mapping::MissionView& view) {
   return time_s;
 }
 
-// First and last mission time of the heartbeats of a recording.
-std::pair<double, double> spanOf(const std::string& path, const std::string& key_file) {
+// First and last mission time of the heartbeats of a recording, or of all else: a node that remembers a
+// mission keeps few heartbeats, and goes on keeping them long after it is over. 0 and 0 without any.
+std::pair<double, double> spanOf(const std::string& path, const std::string& key_file, bool of_heartbeats) {
   double first = 0, last = 0;
   bool any = false;
   MessageLog log(path, key_file);
   while (const auto event = log.next()) {
     const auto header = wire::peek(event->packet.bytes);
-    if (!header || header->kind != wire::MessageKind::kHeartbeat) continue;
+    if (!header || (header->kind == wire::MessageKind::kHeartbeat) != of_heartbeats) continue;
     const double t = header->time.seconds();
+    if (!of_heartbeats && !(t > 0)) continue;  // said again without a time
     first = any ? std::min(first, t) : t;
     last = any ? std::max(last, t) : t;
     any = true;
   }
   return {first, last};
 }
+
+// Thrown through a recording's reader when nobody wants to know any more.
+struct Forgotten {};
 
 std::string recordingOrNone(const Where& where) {
   if (!where.log.empty()) return where.log;
@@ -80,6 +92,7 @@ MissionFeed::~MissionFeed() {
   }
   wake_.notify_all();
   thread_.join();
+  endRemembering();
 }
 
 std::shared_ptr<const Moment> MissionFeed::now() const {
@@ -90,7 +103,8 @@ std::shared_ptr<const Moment> MissionFeed::now() const {
 std::shared_ptr<const Moment> MissionFeed::at(double time_s) const {
   const std::lock_guard lock(mutex_);
   if (moments_.empty()) return nullptr;
-  const auto after = std::ranges::upper_bound(moments_, time_s, {}, [](const auto& m) { return m->time_s; });
+  const auto after =
+      std::ranges::upper_bound(moments_, time_s + kTold, {}, [](const auto& m) { return m->time_s; });
   return after == moments_.begin() ? moments_.front() : *(after - 1);
 }
 
@@ -136,6 +150,7 @@ void MissionFeed::setPhase(const std::string& phase, const std::string& problem)
 std::shared_ptr<Moment> MissionFeed::begun(double time_s, double cell_size_m,
                                            const std::vector<mapping::GlobalCell>& cells,
                                            const Moment* before) {
+  const std::lock_guard lock(mutex_);
   if (!base_s_ && !cells.empty()) {
     const auto oldest = std::ranges::min_element(cells, {}, &mapping::GlobalCell::seen);
     base_s_ = std::floor(oldest->seen.seconds());
@@ -181,12 +196,17 @@ std::shared_ptr<Moment> MissionFeed::momentOf(const mapping::MissionView& view,
 void MissionFeed::add(std::shared_ptr<const Moment> moment) {
   const std::lock_guard lock(mutex_);
   moments_.push_back(std::move(moment));
-  if (moments_.size() <= kMaxMoments) return;
-  size_t dropped = 1;
+  thinOut();
+}
+
+void MissionFeed::thinOut() {
   const auto gap = [this](size_t i) { return moments_[i + 1]->time_s - moments_[i - 1]->time_s; };
-  for (size_t i = 2; i + 1 < moments_.size(); ++i)
-    if (gap(i) < gap(dropped)) dropped = i;
-  moments_.erase(moments_.begin() + static_cast<std::ptrdiff_t>(dropped));
+  while (moments_.size() > kMaxMoments) {
+    size_t dropped = 1;
+    for (size_t i = 2; i + 1 < moments_.size(); ++i)
+      if (gap(i) < gap(dropped)) dropped = i;
+    moments_.erase(moments_.begin() + static_cast<std::ptrdiff_t>(dropped));
+  }
 }
 
 void MissionFeed::run() {
@@ -220,6 +240,7 @@ void MissionFeed::watchNode() {
     }
     const Json status = fusion_node::askNode(where_.node, {{"query", "status"}});
     if (status.contains("error")) throw std::runtime_error(status.at("error").get<std::string>());
+    beginMission(status.at("mission_id"));
     double time_s = 0;
     {
       const std::lock_guard lock(mutex_);
@@ -227,6 +248,7 @@ void MissionFeed::watchNode() {
         const mapping::NodeStatus node = mapping::nodeFromJson(row);
         time_s = std::max(time_s, node.heard_s);
         chronicle_.hear(node);
+        if (remembers_ && meanwhile_.size() < kMostMeanwhile) meanwhile_.push_back(node);
       }
     }
     if (Clock::now() >= next_events_) {
@@ -234,9 +256,66 @@ void MissionFeed::watchNode() {
       next_events_ = Clock::now() + kEventsEvery;
       const std::lock_guard lock(mutex_);
       chronicle_.hearEvents(events);
+      events_ = events;
     }
     lookAtNode(status, time_s);
+    if (!std::exchange(knows_past_, true)) remember(fusion_node::missionFilePath(where_.node, *mission_));
   }
+}
+
+// A node may come back with another mission: nothing of the one before is its past.
+void MissionFeed::beginMission(int32_t mission) {
+  if (mission_ == mission) return;
+  mission_ = mission;
+  knows_past_ = false;
+  looked_at_ = pictured_ = "";
+  endRemembering();
+  const std::lock_guard lock(mutex_);
+  moments_.clear();
+  chronicle_ = {};
+  base_s_.reset();
+}
+
+void MissionFeed::endRemembering() {
+  forgets_ = true;
+  if (memory_.joinable()) memory_.join();
+  forgets_ = false;
+}
+
+// Puts what the node heard before it was looked at before what was seen of it. Takes as long as the recording
+// of a mission takes to read; nobody waits for it.
+void MissionFeed::remember(const std::string& path) {
+  if (!std::filesystem::exists(path)) return;
+  double until_s = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    until_s = moments_.front()->time_s;
+    remembers_ = true;
+    meanwhile_.clear();
+  }
+  memory_ = std::thread([this, path, until_s] {
+    setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), 10);
+    Past past;
+    try {
+      past = readPast(path, until_s);
+    } catch (const Forgotten&) {
+    } catch (const std::exception& error) {
+      spdlog::warn("the time slider begins now: {}", error.what());
+    }
+    {
+      const std::lock_guard lock(mutex_);
+      remembers_ = false;
+      if (past.moments.empty() || forgets_) return;
+      moments_.insert(moments_.begin(), past.moments.begin(), past.moments.end());
+      thinOut();
+      for (const mapping::NodeStatus& node : meanwhile_) past.chronicle.hear(node);
+      past.chronicle.hearLabels(moments_.back()->time_s, moments_.back()->labels);
+      if (!events_.is_null()) past.chronicle.hearEvents(events_);
+      chronicle_ = std::move(past.chronicle);
+      meanwhile_.clear();
+    }
+    on_change_();
+  });
 }
 
 // Asks for what is new of the map at its pace, of the pictures at theirs.
@@ -318,18 +397,26 @@ void MissionFeed::lookAtFiles() {
     on_change_();
     return setPhase("whole");
   }
-  readHistory();
+  Past past = readPast(recordingOrNone(where_), std::numeric_limits<double>::infinity());
+  {
+    const std::lock_guard lock(mutex_);
+    moments_ = std::move(past.moments);
+    chronicle_ = std::move(past.chronicle);
+  }
+  on_change_();
   setPhase("whole");
 }
 
-// Reads the recording from its beginning, with what was decided since, and keeps its map at even times.
-void MissionFeed::readHistory() {
-  const std::string path = recordingOrNone(where_);
-  const auto [first_s, last_s] = spanOf(path, where_.key);
+// Reads a recording from its beginning, with what was decided since, and keeps its map at even times before
+// `until_s`, the last one as well when it is before that. What was decided is in what a node remembers. The
+// chronicle is of all of it.
+MissionFeed::Past MissionFeed::readPast(const std::string& path, double until_s) {
+  const bool is_over = where_.node.empty();
+  const auto [first_s, end_s] = spanOf(path, where_.key, is_over);
+  const double last_s = std::min(end_s, until_s);
   const double step_s = std::max((last_s - first_s) / static_cast<double>(kHistoryMoments), 1e-3);
   const matching::MatcherOptions matcher = matcherOf(where_);
-  std::vector<std::shared_ptr<const Moment>> moments;
-  Chronicle chronicle;
+  Past past;
   std::vector<mapping::Edit> edits;
   const auto keep = [&](const fusion_node::MissionState& heard, double time_s) {
     fusion_node::MissionState state = heard;
@@ -340,34 +427,39 @@ void MissionFeed::readHistory() {
     surprises.update(state.beliefs());
     Json labels = mapping::labelsAnswer(view);
     mapping::addLibraryNames(labels["labels"], view.map, state.beliefs());
-    moments.push_back(momentOf(view, surprises, std::move(labels),
-                               mapping::picturesOfLabels(view.map, state.beliefs(), kMostPictures), time_s,
-                               moments.empty() ? nullptr : moments.back().get()));
-    chronicle.hearLabels(time_s, moments.back()->labels);
+    past.moments.push_back(momentOf(view, surprises, std::move(labels),
+                                    mapping::picturesOfLabels(view.map, state.beliefs(), kMostPictures),
+                                    time_s, past.moments.empty() ? nullptr : past.moments.back().get()));
+    past.chronicle.hearLabels(time_s, past.moments.back()->labels);
   };
   bool is_first = true;
   double due_s = first_s + step_s;
   const auto on_message = [&](const comms::ChannelName& channel, const wire::Header& header,
                               const comms::Packet&, const fusion_node::MissionState& state) {
-    if (std::exchange(is_first, false)) edits = mapping::readEdits(editsPathOf(where_), header.mission);
-    if (header.kind != wire::MessageKind::kHeartbeat) return;
-    const wire::Heartbeat& heartbeat = state.heartbeats().at(channel.node);
-    chronicle.hear(fusion_node::statusOf(channel.node, heartbeat, false, {}));
+    if (!is_over && isStopping()) throw Forgotten();
+    if (std::exchange(is_first, false) && is_over)
+      edits = mapping::readEdits(editsPathOf(where_), header.mission);
+    const bool is_heartbeat = header.kind == wire::MessageKind::kHeartbeat;
+    if (!is_heartbeat && is_over) return;
+    if (is_heartbeat)
+      past.chronicle.hear(
+          fusion_node::statusOf(channel.node, state.heartbeats().at(channel.node), false, {}));
     if (header.time.seconds() < due_s || header.time.seconds() >= last_s) return;
     keep(state, header.time.seconds());
     due_s = header.time.seconds() + step_s;
   };
   const RecordedMission recorded = readRecording(path, matcher, on_message, {}, where_.key);
-  keep(recorded.state, last_s);
+  if (end_s < until_s) keep(recorded.state, end_s);
+  if (!is_over) return past;  // the node says what happened
   fusion_node::MissionState decided = recorded.state;
   for (const mapping::Edit& edit : edits) decided.apply(mapping::pieceOf(edit));
-  chronicle.hearEvents(mapping::eventsAnswer(decided.overview(), decided.beliefs(), decided.events()));
-  {
-    const std::lock_guard lock(mutex_);
-    moments_ = std::move(moments);
-    chronicle_ = std::move(chronicle);
-  }
-  on_change_();
+  past.chronicle.hearEvents(mapping::eventsAnswer(decided.overview(), decided.beliefs(), decided.events()));
+  return past;
+}
+
+bool MissionFeed::isStopping() const {
+  const std::lock_guard lock(mutex_);
+  return stopping_ || forgets_;
 }
 
 }  // namespace shoal::console

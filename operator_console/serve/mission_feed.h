@@ -39,7 +39,8 @@ struct Moment {
 nlohmann::ordered_json colored(nlohmann::ordered_json answer);
 
 /// Keeps looking at a mission from a thread of its own: asks a running node, or reads files once and again
-/// when something was decided. Pages read what it has found, and never make a node work.
+/// when something was decided. Pages read what it has found, and never make a node work. What a node
+/// remembers of the time before is read meanwhile by a second thread, and goes before what was seen.
 class MissionFeed {
  public:
   using OnChange = std::function<void()>;
@@ -68,7 +69,17 @@ class MissionFeed {
   void run();
   void watchNode();
   void lookAtFiles();
-  void readHistory();
+  struct Past {
+    std::vector<std::shared_ptr<const Moment>> moments;  // by time
+    Chronicle chronicle;
+  };
+
+  Past readPast(const std::string& path, double until_s);
+  void beginMission(int32_t mission);
+  void remember(const std::string& path);
+  void endRemembering();
+  bool isStopping() const;
+  void thinOut();
   void lookAtNode(const nlohmann::ordered_json& status, double time_s);
   std::shared_ptr<Moment> momentOf(const mapping::MissionView& view, const mapping::ToldSurprises& surprises,
                                    nlohmann::ordered_json labels, mapping::LabelPictures pictures,
@@ -88,10 +99,16 @@ class MissionFeed {
   std::optional<double> base_s_;
   std::vector<std::shared_ptr<const Moment>> moments_;  // by time
   Chronicle chronicle_;
-  NodeMap node_map_;                  // of the feed's thread, as what follows
+  std::optional<int32_t> mission_;  // of the node; of the feed's thread, as what follows
+  bool knows_past_ = false;         // or somebody is at it
+  std::atomic<bool> forgets_ = false;
+  bool remembers_ = false;                      // the second thread is at it
+  std::vector<mapping::NodeStatus> meanwhile_;  // what the chronicle heard while it is
+  nlohmann::ordered_json events_;               // as the node told them last
+  NodeMap node_map_;                            // of the feed's thread, as what follows
   std::string looked_at_, pictured_;  // what the node said it had when its map, its pictures were asked for
   std::chrono::steady_clock::time_point next_map_, next_pictures_, next_events_;
-  std::thread thread_;
+  std::thread memory_, thread_;
 };
 
 }  // namespace shoal::console

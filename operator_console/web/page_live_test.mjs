@@ -4,6 +4,7 @@
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import { mkdtempSync, openSync, rmSync } from "node:fs";
+import { connect, createServer } from "node:net";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { createInterface } from "node:readline";
@@ -33,11 +34,12 @@ const command = async (...options) => {
   return JSON.parse(said);
 };
 
-let browser;
+const chromium_ = { executablePath: "/usr/bin/chromium", args: ["--no-sandbox", "--disable-gpu"] };
+let browser, laptop;
 try {
   let node = fuse();
   const { child: server, url, port } = await serve(0);
-  browser = await chromium.launch({ executablePath: "/usr/bin/chromium", args: ["--no-sandbox", "--disable-gpu"] });
+  browser = await chromium.launch(chromium_);
   const problems = [];
   const open = async (address) => {
     const page = await (await browser.newContext({ viewport: { width: 1400, height: 860 } })).newPage();
@@ -95,6 +97,36 @@ try {
   assert.ok((await command("labels", "--node", state, "--json")).labels.some((l) => l.name === "sand & <b>rubble</b>"));
   assert.ok(await other.locator("#undo").isHidden(), "who has no key changes nothing");
 
+  // A laptop sleeps for half a minute: all of its browser stands still, and its lines die without a word to it, as when a radio is
+  // off; whoever says something on one afterwards is told so, whoever listens is not. Awake, it has what was decided meanwhile, and
+  // hears of what is decided then.
+  const lines = new Set();
+  const radio = createServer((near) => {
+    const line = { far: connect(port, "127.0.0.1"), isDead: false };
+    lines.add(line);
+    near.on("data", (bytes) => line.isDead ? near.resetAndDestroy() : line.far.write(bytes)).on("error", () => {}).on("close", () => line.far.destroy());
+    line.far.on("data", (bytes) => line.isDead || near.write(bytes)).on("error", () => {}).on("close", () => line.isDead || near.destroy());
+  }).listen(0, "127.0.0.1");
+  await new Promise((resolve) => radio.on("listening", resolve));
+  laptop = await chromium.launchServer(chromium_);
+  const lid = await (await (await chromium.connect(laptop.wsEndpoint())).newContext()).newPage();
+  await lid.goto(`http://127.0.0.1:${radio.address().port}/`);
+  await until(async () => (await text("#legend", lid)).includes("sand & <b>rubble</b>"), "the laptop shows the mission");
+  const second = await page.evaluate(() => document.querySelectorAll("#legend .name")[1].dataset.label);
+  process.kill(-laptop.process().pid, "SIGSTOP");
+  for (const line of lines) { line.isDead = true; line.far.destroy(); }
+  await command("name", second, "dark mud", "--node", state, "--json");
+  await until(async () => (await text("#legend")).includes("dark mud"), "who is awake hears of it");
+  await new Promise((resolve) => setTimeout(resolve, 31000));
+  process.kill(-laptop.process().pid, "SIGCONT");
+  await until(async () => (await text("#legend", lid)).includes("dark mud") && (await text("#phase", lid)) === "live", "the laptop has caught up");
+  assert.equal(await cells(lid), whole);
+  await command("name", second, "grey mud", "--node", state, "--json");
+  await until(async () => (await text("#legend", lid)).includes("grey mud"), "and hears of what is new");
+  await laptop.close();
+  laptop = null;
+  radio.close();
+
   // The node goes, and comes back with what it knew.
   node.kill("SIGINT");
   await node.gone;
@@ -104,6 +136,7 @@ try {
   node = fuse();
   await until(async () => (await text("#phase")) === "live" && (await cells()) === whole, "the node is back");
   assert.match(await text("#legend"), /sand & <b>rubble<\/b>/);
+  await until(async () => ((await text("#robots")).match(/landed/g) ?? []).length === 3, "it knows that all have landed");
 
   // The server goes, and another comes in its place: pages find it by themselves.
   server.kill("SIGINT");
@@ -113,6 +146,22 @@ try {
   await until(async () => (await text("#phase")) === "live" && (await text("#phase", other)) === "live", "both pages have found the new server");
   assert.equal(await cells(other), whole);
   await shot("again");
+
+  // It was not there when the mission was flown; its slider begins where the node's memory does.
+  const ends = (on) => on.locator("#time").evaluate((e) => [Number(e.min), Number(e.max)]);
+  await until(async () => { const [first, last] = await ends(page); return first < last / 2; }, "the slider begins with the mission");
+  await page.locator("#time").focus();
+  await page.keyboard.press("Home");
+  await until(async () => (await text("#phase")) === "as it was" && (await cells()) < whole / 2, "the map as it began");
+  await page.keyboard.press("Escape");
+  await page.locator("#map").focus();
+  await page.keyboard.press("]");
+  await until(async () => (await cells()) > 0 && (await cells()) < whole, "and a little later");
+  assert.doesNotMatch(await text("#legend"), /grey mud/, "nobody had said that then");
+  await page.locator("#now").click();
+  await until(async () => (await cells()) === whole, "now again");
+  assert.match(await text("#events"), /R00 joined/);
+  await shot("remembered");
   assert.deepEqual(problems, []);
   console.log("the live page works");
 } catch (error) {
@@ -120,6 +169,7 @@ try {
   process.exitCode = 1;
 } finally {
   await browser?.close();
+  laptop?.process().kill("SIGKILL");
   for (const child of started) if (child.exitCode === null && child.signalCode === null) child.kill("SIGKILL");
   await Promise.all(started.map((child) => child.gone));
   rmSync(top, { recursive: true });

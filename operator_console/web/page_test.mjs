@@ -72,6 +72,84 @@ try {
   await page.locator("#undo").click();
   await until(async () => !(await text("#legend")).includes("reef & sand"), "the name is taken back");
 
+  // The same as another, something else, never been there: by mouse, each taken back.
+  await page.keyboard.press("Escape");
+  const legend = () => page.evaluate(() => [...document.querySelectorAll("#legend .label")].map((row) => row.dataset.key).sort());
+  const said = async (pattern) => until(async () => pattern.test(await text("#toast")), "it is said: " + pattern);
+  if (await page.locator("#legend .rare").count() > 0) await page.locator("#legend .rare").click();
+  const apart = await legend(), total = await cells();
+  await page.locator("#legend .label").nth(0).click();
+  await page.locator("#inspector .buttons button", { hasText: "Same as" }).click();
+  await said(/choose the label that is the same/);
+  await page.locator("#legend .label").nth(1).click();
+  await said(/ same /);
+  await until(async () => (await legend()).length === apart.length - 1, "two labels are one");
+  await shot("linked");
+  await page.locator("#toast button").click();
+  await until(async () => (await legend()).join() === apart.join(), "two again: " + apart);
+  await page.locator("#legend .label").nth(0).click();
+  await page.locator("#inspector .buttons button", { hasText: "Same as" }).click();
+  await page.keyboard.press("Escape"); // none after all
+  await page.locator("#legend .label").nth(1).click();
+  await page.waitForSelector("#inspector .why table");
+  assert.equal((await legend()).length, apart.length);
+
+  const members = () => page.evaluate(() => [...document.querySelectorAll("#inspector .why tr td:nth-child(2)")].map((e) => e.innerText.replace(/\s*other$/, "")));
+  let rows = 0;
+  for (; await page.locator("#inspector .why tr button.small").count() === 0; ++rows) { // a label that more than one robot knows
+    await page.locator("#legend .label").nth(rows).click();
+    await page.waitForSelector("#inspector .why table");
+  }
+  const alike = await members(), odd = page.locator("#inspector .why tr", { has: page.locator("button.small") }).first();
+  await odd.hover();
+  await odd.locator("button.small").click();
+  await said(/ not /);
+  await until(async () => (await members()).length < alike.length, "it is taken out of the label");
+  await page.keyboard.press("u");
+  await until(async () => (await members()).join() === alike.join(), "and is back: " + alike);
+  await page.keyboard.press("Escape");
+
+  const out = page.locator('#robots [data-key="exclude R01"]');
+  await page.locator("#robots [data-key=R01]").hover();
+  page.once("dialog", (question) => question.dismiss());
+  await out.click();
+  await page.waitForTimeout(500);
+  assert.equal(await cells(), total, "whoever says no has changed nothing");
+  let asks = "";
+  page.once("dialog", (question) => { asks = question.message(); return question.accept(); });
+  await page.locator("#robots [data-key=R01]").hover();
+  await out.click();
+  assert.match(asks, /as if R01 had never been there\? Undo/);
+  await until(async () => (await cells()) < total, "its cells are gone");
+  await until(async () => !(await text("#legend")).includes("only R01"), "so are its labels");
+  await shot("excluded");
+  await page.locator("#undo").click();
+  await until(async () => (await cells()) === total && (await legend()).join() === apart.join(), "all is as it was");
+
+  // A name as long as a name may be stays within its place.
+  for (const name of ["W".repeat(64), "\u{1F41F}".repeat(16)]) {
+    await page.locator("#legend .label .name").first().dblclick();
+    await page.locator("#legend input").fill(name);
+    assert.match(await text("#legend .naming"), /Enter keeps it/);
+    await page.keyboard.press("Enter");
+    await page.waitForSelector(`#legend .name:text-is("${name}")`, { timeout: 20000 });
+    await page.locator("#legend .label").first().click();
+    await page.waitForSelector("#inspector .why table");
+    for (const [width, height] of [[1400, 860], [390, 844]]) {
+      await page.setViewportSize({ width, height });
+      const sticking = await page.evaluate(() => {
+        const within = (e, box) => { const a = e.getBoundingClientRect(), b = box.getBoundingClientRect(); return a.width === 0 || (a.left >= b.left - 1 && a.right <= b.right + 1); };
+        const inspector = document.getElementById("inspector"), aside = document.querySelector("aside");
+        return [...inspector.querySelectorAll("*")].filter((e) => !within(e, inspector)).concat([...aside.querySelectorAll("#legend *")].filter((e) => !within(e, aside)), within(document.getElementById("toast"), document.body) ? [] : ["toast"]).map((e) => e.className || e.tagName || e);
+      });
+      assert.deepEqual(sticking, [], `${name} at ${width}`);
+      await shot(`long_name_${width}`);
+    }
+    await page.setViewportSize({ width: 1400, height: 860 });
+    await page.keyboard.press("u");
+    await until(async () => !(await text("#legend")).includes(name), "the name is taken back");
+  }
+
   // Layers by key, and time.
   for (const [key, layer] of [["2", "certainty"], ["3", "surprise"], ["4", "age"], ["5", "robot"], ["6", "coverage"], ["7", "truth"], ["1", "label"]]) {
     await page.keyboard.press(key);
@@ -263,6 +341,31 @@ try {
     if (folder) await small.screenshot({ path: `${folder}/size_${width}.png` });
     await small.close();
   }
+
+  // Fingers: two apart zoom around their middle, one moves.
+  const touched = await (await browser.newContext({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true })).newPage();
+  await touched.goto(url);
+  await touched.waitForSelector("#legend .label");
+  await until(() => touched.evaluate(() => !window.shoal.map.isEmpty), "the map is there");
+  const hand = await touched.context().newCDPSession(touched), top = (await touched.locator("#map").boundingBox()).y;
+  const fingers = (type, ...points) => hand.send("Input.dispatchTouchEvent", { type, touchPoints: points.map(([x, y], id) => ({ x, y: y + top, id })) });
+  const seen = () => touched.evaluate(() => { const { map } = window.shoal; return { scale: map.scale, middle: map.toWorld(195, 300), x: map.center.x }; });
+  const flat = await seen();
+  await fingers("touchStart", [175, 300]);
+  await fingers("touchStart", [175, 300], [215, 300]);
+  for (let d = 4; d <= 40; d += 4) await fingers("touchMove", [175 - d, 300], [215 + d, 300]);
+  await fingers("touchEnd");
+  const near = await seen();
+  assert.ok(Math.abs(near.scale / flat.scale - 3) < 0.2, `three times as near: ${near.scale / flat.scale}`);
+  for (const i of [0, 1]) assert.ok(Math.abs(near.middle[i] - flat.middle[i]) * near.scale < 8, "what was between the fingers is still there");
+  await fingers("touchStart", [195, 300]);
+  for (let d = 10; d <= 60; d += 10) await fingers("touchMove", [195 + d, 300]);
+  await fingers("touchEnd");
+  const beside = await seen();
+  assert.ok(beside.scale === near.scale && beside.x < near.x - 30 / near.scale, "one finger moves the map");
+  assert.match(touched.url(), /zoom=/, "the link knows");
+  assert.equal(await touched.evaluate(() => visualViewport.scale), 1, "the page itself stays as it is");
+  await touched.close();
 
   // The map as one robot holds it, and a link to that.
   await page.locator("#holders").selectOption("R01");

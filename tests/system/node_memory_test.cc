@@ -79,6 +79,30 @@ TEST_F(NodeMemoryTest, StateClockAndEventsComeBack) {
   EXPECT_EQ(kept, 13u);  // eleven topics, each once, and two heartbeats
 }
 
+TEST_F(NodeMemoryTest, ARobotThatHasLandedHasLandedStill) {
+  const auto says = [](int64_t second, wire::Phase phase) {
+    wire::Heartbeat h;
+    h.mission = kMission;
+    h.time = {second * 1'000'000};
+    h.phase = phase;
+    h.observation = static_cast<int32_t>(second);
+    return comms::Packet{"SHOAL_R01_HEARTBEAT", wire::encode(h)};
+  };
+  {
+    MissionState state(kMission, {});
+    NodeMemory memory(dir_, "OPERATOR", kMission);
+    hear(memory, state, says(1, wire::Phase::kFlying));
+    hear(memory, state, says(2, wire::Phase::kFlying));
+    hear(memory, state, says(3, wire::Phase::kLanded));  // soon after the last, and worth keeping
+    hear(memory, state, says(4, wire::Phase::kLanded));
+    memory.commit(state);
+  }
+  MissionState after(kMission, {});
+  NodeMemory(dir_, "OPERATOR", kMission).recall(after);
+  EXPECT_EQ(after.heartbeats().at("R01").phase, wire::Phase::kLanded);
+  EXPECT_EQ(after.heartbeats().at("R01").observation, 3);
+}
+
 TEST_F(NodeMemoryTest, EventsAreKeptOnceHoweverOftenItIsStartedAgain) {
   for (int life = 0; life < 3; ++life) {
     MissionState state(kMission, {});

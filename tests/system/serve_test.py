@@ -587,6 +587,40 @@ class Serve(unittest.TestCase):
 class Live(unittest.TestCase):
     """A node that works, goes away and comes back."""
 
+    def assert_its_past_is_remembered(self, state, whole):
+        """Who begins to look when all is over sees how it came, as the node remembers it."""
+        with Server("--node", state) as late:
+            for _ in range(200):
+                times = late.settled("live")["times_s"]
+                if len(times) > 1:
+                    break
+                time.sleep(0.1)
+            self.assertEqual(times, sorted(times))
+            self.assertLess(times[0], 6, times)
+            self.assertGreater(len(times), 3)
+            counts = [len(tiles(late.ask(f"/api/map?at={t}")[1])[0]) for t in times]
+            self.assertLess(counts[0], counts[1])
+            self.assertLess(counts[1], counts[-1])
+            self.assertEqual(counts, sorted(counts))
+            self.assertEqual(late.json(f"/api/status?at={times[-1]}")["cells"], whole)
+            held = late.json(f"/api/labels?at={times[-2]}")["labels"]
+            self.assertGreater(len(held), 0)
+            self.assertNotIn("sand", [row["name"] for row in late.json(f"/api/labels?at={times[1]}")["labels"]])  # that was said later
+            events = late.json("/api/events")["events"]
+            self.assertEqual(sorted(e["text"] for e in events if e["kind"] == "joined" and e["text"].startswith("R")),
+                             ["R00 joined", "R01 joined", "R02 joined"], events)
+            self.assertEqual([e for e in events if e["kind"] == "lost"], [])
+            self.assertEqual(sum(e["kind"] == "edit" and '"sand"' in e["text"] for e in events), 1)
+            tracks = {t["robot"]: t["points"] for t in late.json("/api/tracks")["tracks"]}
+            self.assertLess(tracks["R00"][0][0], 13)  # of heartbeats it keeps one in ten
+            self.assertGreater(len({tuple(p[1:]) for p in tracks["R00"]}), 1)
+            traffic, status = late.json("/api/traffic"), late.json("/api/status")
+            sent = {n["name"]: n["bytes_sent"] for n in status["nodes"]}
+            for node in traffic["nodes"]:  # all that was ever sent, and not at once
+                self.assertEqual(sum(sum(row[1:]) for row in node["bins"]), sent[node["node"]], node)
+                if node["node"].startswith("R"):
+                    self.assertGreater(len(node["bins"]), 5, node)
+
     def test_a_live_mission_is_followed(self):
         with tempfile.TemporaryDirectory(prefix="shoal_live_") as top:
             state = os.path.join(top, "state")
@@ -606,7 +640,7 @@ class Live(unittest.TestCase):
                     node = start("fusion_node", "--node", "OPERATOR", "--state", state)
                     for n in range(3):
                         start("robot_agent", "--robot", f"R0{n}", "--robots", "3", "--source", "reef:tuning", "--observations", "12",
-                              "--budget", "0", "--rate", "max", "--out", os.path.join(top, "out"))
+                              "--budget", "0", "--rate", "4", "--out", os.path.join(top, "out"))
                     with socket.create_connection(("127.0.0.1", server.port), timeout=60) as stream:
                         stream.sendall(b"GET /api/stream HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n")
                         said = b""
@@ -652,6 +686,7 @@ class Live(unittest.TestCase):
                         before = cells
                         time.sleep(2)
                         cells, _ = tiles(server.ask("/api/map")[1])
+                    self.assert_its_past_is_remembered(state, whole)
                     node.send_signal(signal.SIGINT)
                     node.wait(timeout=20)
                     self.assertTrue(any(e["kind"] == "edit" and '"sand"' in e["text"] for e in server.json("/api/events")["events"]))

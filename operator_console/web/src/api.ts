@@ -50,15 +50,19 @@ export function takeToken(): void {
 }
 export const hasToken = (): boolean => sessionStorage.getItem("token") !== null;
 
-export async function ask<T>(path: string, signal?: AbortSignal): Promise<T> {
-  const response = await fetch(path, { signal });
+// Ends all questions that are under way: a line that died while the machine slept never answers them.
+let line = new AbortController();
+export function hangUp(): void { line.abort(new Error("the line was dead")); line = new AbortController(); }
+
+export async function ask<T>(path: string): Promise<T> {
+  const response = await fetch(path, { signal: line.signal });
   const answer = await response.json();
   if (!response.ok) throw new Error(answer.error ?? response.statusText);
   return answer as T;
 }
 
 export async function askBytes(path: string): Promise<ArrayBuffer> {
-  const response = await fetch(path);
+  const response = await fetch(path, { signal: line.signal });
   if (!response.ok) throw new Error((await response.json()).error ?? response.statusText);
   return response.arrayBuffer();
 }

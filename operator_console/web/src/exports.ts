@@ -7,7 +7,7 @@ const KEPT = "shoal origin";
 
 export function openExports(mission: Mission): void {
   const box = byId<HTMLDialogElement>("exports");
-  const field = (name: string, what: string): HTMLInputElement => el("input", { id: "at" + name, "aria-label": what, placeholder: what, inputmode: "decimal", size: "13" }) as HTMLInputElement;
+  const field = (name: string, what: string): HTMLInputElement => el("input", { id: "at" + name, inputmode: "decimal", size: "13", "data-what": what }) as HTMLInputElement;
   const fields = [field("latitude", "latitude °"), field("longitude", "longitude °"), field("heading", "heading °")];
   (JSON.parse(localStorage.getItem(KEPT) ?? "[]") as string[]).forEach((text, i) => { if (fields[i]) fields[i].value = text; });
   const links = mission.exports.map((f) => {
@@ -35,7 +35,7 @@ export function openExports(mission: Mission): void {
   fields.forEach((i) => i.addEventListener("input", update));
   box.replaceChildren(el("h2", {}, "The map for other programs"), el("table", {}, ...links.map((l) => l.row)),
     el("h3", {}, "Where on Earth was (0, 0)?"), el("p", { class: "dim" }, "Degrees of WGS 84. The heading is where +Y points, clockwise from true north; empty: north."),
-    el("p", { class: "origin" }, ...fields), fault, el("form", { method: "dialog" }, el("button", {}, "Close")));
+    el("p", { class: "origin" }, ...fields.map((i) => el("label", {}, i.dataset.what!, i))), fault, el("form", { method: "dialog" }, el("button", {}, "Close")));
   update();
   if (!box.open) box.showModal();
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-import { ask, askBytes, decide, hasToken, takeToken } from "./api";
+import { ask, askBytes, decide, hangUp, hasToken, takeToken } from "./api";
 import type { CellHistory, Happening, Holding, Label, Mission, Node, Picture, Place, Status, Track, Traffic, TruthClass, Why } from "./api";
 import { alarmCss, classColor, LEAST_SURPRISE, MOST_SURPRISE, rampCss, robotColor, USUAL } from "./colors";
 import { area, byId, el, pressable, refill, seconds } from "./dom";
@@ -45,10 +45,10 @@ const mayWrite = (): boolean => held === null && mission !== null && !mission.re
 // Cells and robots are asked for with every piece of news; the rest, which is for reading, once a second.
 const READ_MS = 1000;
 type What = "map" | "all";
-let fetching = false, again: What | null = null, nextAll = 0, allLater = 0;
+let fetching = false, fetchingSince = 0, again: What | null = null, nextAll = 0, allLater = 0;
 async function refresh(what: What = "all"): Promise<void> {
   if (fetching) { again = again === "all" ? "all" : what; return; }
-  fetching = true;
+  fetching = true; fetchingSince = Date.now();
   if (!isNow() || !mission || performance.now() >= nextAll) what = "all";
   try {
     if (what === "all") {
@@ -121,18 +121,30 @@ async function fetchTruth(): Promise<void> {
   }
 }
 
+// The server says something every ten seconds. When it does not, the line is dead and nobody has told this end: a
+// machine that slept, a cable that was pulled.
+const DEAD_MS = 25000, HUNG_MS = 60000;
 function listen(): void {
   const stream = new EventSource("/api/stream");
+  let heard = Date.now();
+  const watch = setInterval(() => {
+    if (fetching && Date.now() > fetchingSince + HUNG_MS) hangUp();
+    if (Date.now() < heard + DEAD_MS) return;
+    clearInterval(watch); stream.close();
+    hangUp(); listen();
+  }, 2000);
+  stream.addEventListener("ping", () => (heard = Date.now()));
   stream.onmessage = (message) => {
+    heard = Date.now();
     const news = JSON.parse(message.data);
-    const isNews = !mission || news.life !== mission.life || news.phase !== mission.phase;
+    const isNews = !mission || news.life !== mission.life || news.phase !== mission.phase || byId("phase").className === "bad";
     if (!isNow() && !isNews) return;
     if (mission && !isNews) Object.assign(mission, { sequence: news.sequence, pictures: news.pictures, time_s: news.time_s });
     void refresh(isNews ? "all" : "map");
   };
   stream.onerror = () => {
     byId("phase").textContent = "server gone, trying again"; byId("phase").className = "bad";
-    if (stream.readyState === EventSource.CLOSED) setTimeout(listen, 2000); // refused: others listen
+    if (stream.readyState === EventSource.CLOSED) { clearInterval(watch); setTimeout(listen, 2000); } // refused: others listen
   };
 }
 setInterval(() => { if (held !== null && past === null && mission?.phase === "live" && !document.hidden) void refresh(); }, 5000);
@@ -416,11 +428,12 @@ function nameLabel(label: number): void {
   if (!mayWrite()) return toast(mission?.read_only ? "This console is read-only." : "Open the URL that serve printed to name things.");
   const place = document.querySelector(`#legend [data-label="${label}"]`);
   if (!place) return;
-  const input = el("input", { value: labels.find((l) => l.label === label)?.name ?? "", maxlength: "64", placeholder: "what is it?", "aria-label": "Name" }) as HTMLInputElement;
-  const done = (keep: boolean): void => { const text = input.value.trim(); input.replaceWith(place); if (keep) void decided({ edit: "name", label: String(label), text }).then(() => { if (map.selected === label) void inspect(label); }); };
+  const input = el("input", { value: labels.find((l) => l.label === label)?.name ?? "", maxlength: "64", "aria-label": "Name" }) as HTMLInputElement;
+  const box = el("span", { class: "naming" }, input, el("small", { class: "dim" }, "Enter keeps it, Esc does not"));
+  const done = (keep: boolean): void => { const text = input.value.trim(); box.replaceWith(place); if (keep) void decided({ edit: "name", label: String(label), text }).then(() => { if (map.selected === label) void inspect(label); }); };
   input.addEventListener("keydown", (e) => { e.stopPropagation(); if (e.key === "Enter") done(true); if (e.key === "Escape") done(false); });
   input.addEventListener("click", (e) => e.stopPropagation());
-  place.replaceWith(input);
+  place.replaceWith(box);
   input.focus(); input.select();
 }
 

@@ -6,7 +6,7 @@ export class Pinch {
   private last: [number, number, number] | null = null; // distance, middle
 
   constructor(canvas: HTMLElement) {
-    canvas.addEventListener("pointerdown", (e) => { if (e.pointerType === "touch") this.put(e); });
+    canvas.addEventListener("pointerdown", (e) => { if (e.pointerType === "touch") { this.put(e); if (this.isOn) this.step(); } });
     canvas.addEventListener("pointermove", (e) => { if (this.fingers.has(e.pointerId)) this.put(e); });
     for (const end of ["pointerup", "pointercancel"] as const) canvas.addEventListener(end, (e) => { this.fingers.delete(e.pointerId); this.last = null; });
   }
