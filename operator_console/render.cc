@@ -22,7 +22,7 @@ constexpr int kMargin = 16;
 constexpr int kTitleHeight = 34;
 constexpr int kRowHeight = 24;
 constexpr int kPictureRowHeight = 38;
-constexpr size_t kLegendRows = 24;
+constexpr int kMostLegendRows = 24, kFewestLegendRows = 8;  // between them, what fits beside the map
 const cv::Scalar kPaper(250, 250, 250), kInk(40, 40, 40), kNothing(225, 225, 225);
 
 cv::Scalar bgr(const Rgb& c) { return {double(c[2]), double(c[1]), double(c[0])}; }
@@ -74,7 +74,7 @@ struct LegendRow {
 
 std::vector<LegendRow> legendOf(const mapping::GlobalMap& map, const world::Grid& grid,
                                 const std::map<world::GlobalLabel, Rgb>& colors,
-                                const LegendPictures& pictures) {
+                                const LegendPictures& pictures, size_t most_rows) {
   const auto areas = mapping::areas(map, grid);
   std::vector<mapping::LabelSummary> labels = map.labels;
   std::ranges::stable_sort(labels, std::ranges::greater{}, &mapping::LabelSummary::cells);
@@ -82,7 +82,7 @@ std::vector<LegendRow> legendOf(const mapping::GlobalMap& map, const world::Grid
   for (const auto& [label, area] : areas) total += area;
   std::vector<LegendRow> rows;
   for (const auto& label : labels) {
-    if (rows.size() == kLegendRows - 1 && labels.size() > kLegendRows) {
+    if (rows.size() == most_rows - 1 && labels.size() > most_rows) {
       rows.push_back(
           {{225, 225, 225}, "and " + std::to_string(labels.size() - rows.size()) + " more labels"});
       break;
@@ -216,15 +216,16 @@ cv::Mat render(const mapping::GlobalMap& map, const world::Grid& grid, const std
   }
   const cv::Rect bounds = boundsOf(map);
   const cv::Mat fused_picture = drawColumns(fused, bounds);
-  const auto rows = legendOf(map, grid, colors, pictures);
+  const int map_width = fused_picture.cols, map_height = fused_picture.rows;
   const int row_height = pictures.empty() ? kRowHeight : kPictureRowHeight;
   std::vector<LegendRow> class_rows;
   if (truth)
     for (const auto& k : truth->classes) class_rows.push_back({k.rgb, k.name});
+  const int beside = 26 + static_cast<int>(truth ? class_rows.size() + 2 : 0) * kRowHeight;
+  const int most_rows = std::clamp((map_height - beside) / row_height, kFewestLegendRows, kMostLegendRows);
+  const auto rows = legendOf(map, grid, colors, pictures, static_cast<size_t>(most_rows));
 
-  const int legend_height = 26 + static_cast<int>(rows.size()) * row_height +
-                            static_cast<int>(truth ? class_rows.size() + 2 : 0) * kRowHeight;
-  const int map_width = fused_picture.cols, map_height = fused_picture.rows;
+  const int legend_height = beside + static_cast<int>(rows.size()) * row_height;
   const int maps = truth ? 2 : 1;
   cv::Mat picture(kTitleHeight + std::max(map_height, legend_height) + 2 * kMargin,
                   maps * (map_width + kMargin) + kLegendWidth + kMargin, CV_8UC3, kPaper);

@@ -91,7 +91,7 @@ class MadeNode(threading.Thread):
                 if question["query"] == "map":
                     link.sendall(self.map(question.get("has", "")).encode())
                 else:
-                    answer = {"status": self.status(), "pictures": {"labels": []}}.get(question["query"], {"error": "made up"})
+                    answer = {"status": self.status(), "pictures": {"labels": []}, "events": {"events": []}}.get(question["query"], {"error": "made up"})
                     link.sendall((json.dumps(answer) + "\n").encode())
 
 

@@ -90,6 +90,27 @@ TEST(RenderTest, BesideATruthLabelsTakeTheColourOfTheirClass) {
   EXPECT_TRUE(has(render(map, world::Grid(1.0), "t", truth), {9, 8, 7}));
 }
 
+TEST(RenderTest, TheLegendIsAsHighAsTheMapOrNamesEight) {
+  mapping::GlobalMap map;
+  LegendPictures pictures;
+  for (int i = 0; i < 40; ++i) {
+    map.cells.push_back(cell(i % 10, i / 10, 0, i));
+    map.labels.push_back({GlobalLabel{i}, "", 1, {}, {0}});
+    pictures[GlobalLabel{i}] = cv::Mat(32, 32, CV_8UC3, cv::Scalar(i, 1, 2));
+  }
+  const auto shows = [&](const cv::Mat& picture, int i) {
+    return has(picture, {2, 1, static_cast<uint8_t>(i)});
+  };
+  const cv::Mat flat = render(map, world::Grid(1.0), "t", {}, pictures);  // 720 x 288 pixels of map
+  EXPECT_TRUE(shows(flat, 6));
+  EXPECT_FALSE(shows(flat, 7));  // there stands how many more there are
+  for (auto& c : map.cells) std::swap(c.cell.x, c.cell.y);
+  const cv::Mat high = render(map, world::Grid(1.0), "t", {}, pictures);  // 288 x 720
+  EXPECT_EQ(high.rows, 34 + 720 + 2 * 16);
+  EXPECT_TRUE(shows(high, 16));
+  EXPECT_FALSE(shows(high, 20));
+}
+
 TEST(RenderTest, AnEmptyMapSaysSo) {
   const cv::Mat picture = render({}, world::Grid(1.0), "title");
   EXPECT_FALSE(picture.empty());

@@ -188,7 +188,7 @@ async function showHolding(): Promise<void> {
     if (of !== view()) return;
     const others = h.shares.filter((s) => s.robot !== h.node && s.robot.startsWith("R")), whole = others.filter((s) => s.whole).length, late = others.filter((s) => !s.whole);
     box.textContent = !h.fuses ? `${h.node} fuses nothing: it holds its own cells and topics, as told by ${seconds(h.at_s)}.`
-      : `${h.node} at ${seconds(h.at_s)}: all that ${whole} of ${others.length} robots had said` + (late.length ? `; of ${late.map((s) => `${s.robot} until ${seconds(s.until_s)}${s.certain ? "" : " at least"}`).join(", ")}.` : ".")
+      : `${h.node} at ${seconds(h.at_s)}: ` + [whole > 0 ? `all that ${whole} of ${others.length} robots had said` : "", ...late.map((s) => `of ${s.robot} what it said until ${seconds(s.until_s)}${s.certain ? "" : " at least"}`)].filter((part) => part !== "").join("; ") + "."
         + (h.agrees === true ? " Its own digest says the same." : h.agrees === false ? " Its own digest says OTHERWISE." : "");
   } catch (problem) { box.textContent = (problem as Error).message; }
 }
