@@ -347,6 +347,7 @@ try {
   await touched.goto(url);
   await touched.waitForSelector("#legend .label");
   await until(() => touched.evaluate(() => !window.shoal.map.isEmpty), "the map is there");
+  assert.match(await touched.locator("#readout").innerText(), /two fingers: zoom/);
   const hand = await touched.context().newCDPSession(touched), top = (await touched.locator("#map").boundingBox()).y;
   const fingers = (type, ...points) => hand.send("Input.dispatchTouchEvent", { type, touchPoints: points.map(([x, y], id) => ({ x, y: y + top, id })) });
   const seen = () => touched.evaluate(() => { const { map } = window.shoal; return { scale: map.scale, middle: map.toWorld(195, 300), x: map.center.x }; });

@@ -31,7 +31,8 @@ let fitted = false, playing = 0,
 let classes: TruthClass[] = [], truthOf = ""; // what the truth was fetched for
 const pictures = new Pictures();
 const updates: { at: number; bytes: number; fetchMs: number }[] = []; // the last ones, for measuring
-const HINT = byId("readout").textContent!;
+const HINT = matchMedia("(hover: none)").matches ? "Tap: what is here, and why · drag: move · two fingers: zoom" : byId("readout").textContent!;
+byId("readout").textContent = HINT;
 let depth: View3D | null = null; // the view in 3-D, while it is shown
 const LAYER_TEXT: Record<Layer, string> = { label: "Label", certainty: "Certainty", surprise: "Surprise", age: "Age", robot: "Robot", coverage: "Coverage", truth: "Truth" };
 
