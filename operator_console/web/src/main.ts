@@ -324,7 +324,9 @@ function toast(text: string, undo = false): void {
 
 async function decided(edit: Record<string, string>): Promise<void> {
   try {
-    toast((await decide(edit)).says, edit.edit !== "undo");
+    const { says } = await decide(edit), taken = says.match(/^(\S+) is undone$/); // the events know what that was
+    const was = taken && events.find((e) => e.text.startsWith(taken[1] + ": "));
+    toast(was ? "Undone: " + was.text.slice(taken![1].length + 2) : says, edit.edit !== "undo");
     await refresh();
     if (edit.edit === "undo" && map.selected !== null) void inspect(map.selected);
   } catch (problem) { toast((problem as Error).message); }
