@@ -14,16 +14,42 @@ std::optional<Detail> parseDetail(std::string_view text) {
   return std::nullopt;
 }
 
+namespace {
+
+constexpr double kCoarseCosine = 0.99;  // of coarse topics to the exact counts, at least
+constexpr double kMostCoarse = 0.1;     // the largest unit, as a share of the norm
+
+// Fine ones are rounded half up. Coarse ones go up from five eighths on: what small counts lose saves more
+// bytes than the smaller unit that makes up for it costs.
+double roundingOf(Detail detail) { return detail == Detail::kFine ? 0.5 : 0.375; }
+
+double levelOf(int32_t count, double unit, double rounding) { return std::floor(count / unit + rounding); }
+
+// Whether coarse counts in whole units keep the cosine. Sums of integers below 2^53: exact.
+bool keepsCosine(const std::vector<world::WordCount>& counts, double squares, double unit) {
+  double products = 0, levels = 0;
+  for (const world::WordCount& w : counts) {
+    const double level = levelOf(w.count, unit, roundingOf(Detail::kCoarse));
+    products += w.count * level;
+    levels += level * level;
+  }
+  return products * products > kCoarseCosine * kCoarseCosine * squares * levels;
+}
+
+}  // namespace
+
 std::vector<world::WordCount> quantize(const std::vector<world::WordCount>& counts, Detail detail) {
   double squares = 0;  // of integers, and below 2^53 for any count of words a robot can see: exact
   for (const world::WordCount& w : counts) squares += static_cast<double>(w.count) * w.count;
   // sqrt is correctly rounded by IEEE 754, so every machine gets the same integers.
   const double norm = std::sqrt(squares);
   const double step = std::max(1.0, norm / 1000.0);
-  const double unit = detail == Detail::kFine ? 1.0 : std::max(1.0, std::floor(norm / step / 100.0 + 0.5));
+  double unit = detail == Detail::kFine ? 1.0 : std::max(1.0, std::floor(norm / step * kMostCoarse));
+  while (unit > 1 && !keepsCosine(counts, squares, step * unit)) --unit;
+  const double rounding = unit > 1 ? roundingOf(detail) : roundingOf(Detail::kFine);
   std::vector<world::WordCount> quantized;
   for (const world::WordCount& w : counts) {
-    const double level = std::floor(w.count / (step * unit) + 0.5);
+    const double level = levelOf(w.count, step * unit, rounding);
     if (level > 0) quantized.push_back({w.word, static_cast<int32_t>(level * unit)});
   }
   return quantized;

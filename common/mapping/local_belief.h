@@ -47,7 +47,7 @@ struct ExamplePicture {
 /// How finely a robot tells what it believes: bytes against detail. Labels and times are exact in both.
 enum class Detail {
   kFine,   ///< topics in thousandths of their norm, certainties in ninths
-  kCoarse  ///< in hundredths, in thirds
+  kCoarse  ///< as coarsely as keeps their cosine above .99, in thirds
 };
 
 /// "fine", "coarse", and back; nothing for another text.
@@ -67,10 +67,11 @@ struct LocalBelief {
 };
 
 /// A topic's counts as integers fit to travel: divided by a thousandth of their L2 norm, when that is above
-/// 1, and rounded half up; words that round to 0 are left out. Coarse ones are rounded to multiples of a
-/// hundredth of their norm, in the same scale. One step for all words, so that the word groups keep their
-/// weights. Of n words in all the cosine to the exact counts stays above 1 - n / 8,000,000, coarse above
-/// 1 - n / 80,000.
+/// 1, and rounded half up; words that round to 0 are left out. One step for all words, so that the word
+/// groups keep their weights. Of n words in all the cosine to the exact counts stays above 1 - n / 8,000,000.
+/// Coarse ones are rounded to multiples of the largest unit, in whole steps up to a tenth of the norm, that
+/// keeps the cosine above .99; where none does, they are as fine ones. Cost: O(n), coarse up to 100 times
+/// that.
 std::vector<world::WordCount> quantize(const std::vector<world::WordCount>& counts,
                                        Detail detail = Detail::kFine);
 

@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
+#include <map>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <vector>
@@ -35,14 +38,59 @@ TEST(QuantizeTest, RoundsToAThousandthOfTheNorm) {
             (std::vector<world::WordCount>{{0, 600}, {1, 800}, {2, 2}, {3, 3}}));
 }
 
-TEST(QuantizeTest, CoarseRoundsToAHundredth) {
-  // The norm of (300, 400) is 500: multiples of 5. Of (3000, 4000) it is 5000: multiples of 50, told as
-  // fifths.
-  EXPECT_EQ(quantize({{0, 302}, {1, 400}, {2, 2}, {3, 3}}, Detail::kCoarse),
-            (std::vector<world::WordCount>{{0, 300}, {1, 400}, {3, 5}}));
-  EXPECT_EQ(quantize({{0, 3000}, {1, 4000}, {2, 24}, {3, 26}}, Detail::kCoarse),
-            (std::vector<world::WordCount>{{0, 600}, {1, 800}, {3, 10}}));
+TEST(QuantizeTest, CoarseTakesTheLargestUnitThatKeepsTheCosine) {
+  // The norm of (300, 400) is 500, so the unit at most 50: 6 and 8 of it, and nothing is lost.
+  EXPECT_EQ(quantize({{0, 300}, {1, 400}}, Detail::kCoarse),
+            (std::vector<world::WordCount>{{0, 300}, {1, 400}}));
+  // (302, 400) and 2 of each of two more: 6 and 8 of 50 again, cosine 250600 / (500 sqrt(251212)) = .99998.
+  EXPECT_EQ(quantize({{0, 302}, {1, 400}, {2, 2}, {3, 2}}, Detail::kCoarse),
+            (std::vector<world::WordCount>{{0, 300}, {1, 400}}));
+  // Up from five eighths: 31 is less of 50, 32 more.
+  EXPECT_EQ(quantize({{0, 300}, {1, 400}, {2, 31}, {3, 32}}, Detail::kCoarse),
+            (std::vector<world::WordCount>{{0, 300}, {1, 400}, {3, 50}}));
+  // The norm of (3000, 4000) is 5000: told in fifths, as multiples of 100 of these.
+  EXPECT_EQ(quantize({{0, 3000}, {1, 4000}, {2, 24}}, Detail::kCoarse),
+            (std::vector<world::WordCount>{{0, 600}, {1, 800}}));
   EXPECT_EQ(quantize({{0, 3}, {9, 4}}, Detail::kCoarse), quantize({{0, 3}, {9, 4}}));
+}
+
+TEST(QuantizeTest, CoarseKeepsTheCosineAndNoLargerUnitDoes) {
+  Random random(11);
+  const auto cosine = [](const std::vector<world::WordCount>& a, const std::vector<world::WordCount>& b) {
+    std::map<int32_t, double> of_b;
+    double aa = 0, bb = 0, ab = 0;
+    for (const auto& [word, count] : b) {
+      of_b[word] = count;
+      bb += static_cast<double>(count) * count;
+    }
+    for (const auto& [word, count] : a) {
+      aa += static_cast<double>(count) * count;
+      ab += count * of_b[word];
+    }
+    return ab / std::sqrt(aa * bb);
+  };
+  for (int round = 0; round < 50; ++round) {
+    std::vector<world::WordCount> counts;  // a few heavy words, many light ones, the norm below 1000
+    double squares = 0;
+    for (int word = 0; word < 200; ++word) {
+      const double u = random.uniform();
+      counts.push_back({word, 1 + static_cast<int32_t>(100 * u * u * u * u)});
+      squares += static_cast<double>(counts.back().count) * counts.back().count;
+    }
+    ASSERT_LT(squares, 1e6);
+    const auto coarse = quantize(counts, Detail::kCoarse);
+    EXPECT_GT(cosine(counts, coarse), 0.99);
+    int32_t unit = 0;
+    for (const auto& [word, count] : coarse) unit = std::gcd(unit, count);
+    ASSERT_GT(unit, 1);
+    for (int32_t larger = unit + 1; larger <= static_cast<int32_t>(std::sqrt(squares) / 10); ++larger) {
+      std::vector<world::WordCount> rounded;
+      for (const auto& [word, count] : counts)
+        if (const int32_t level = (8 * count + 3 * larger) / (8 * larger); level > 0)
+          rounded.push_back({word, level * larger});
+      EXPECT_LE(cosine(counts, rounded), 0.99 + 1e-12) << unit << ' ' << larger;
+    }
+  }
 }
 
 // In steps of 1/63; what was told is told again as it is.
