@@ -27,17 +27,17 @@ namespace shoal::topics {
 /// topic's id. The very first word has no other choice than the first slot, however small γ. Once the ids
 /// have run out nothing new opens.
 ///
-/// The order of draws: up to kMaxChains cells are entered at once, none of which may adjoin another, and
-/// their words are drawn in turns, one of each cell, in blocks. n_kw and n_ck are always exact. n_k in the
-/// denominator is as it was at the start of the block, which is so short that n_k + Vβ changes by a 16th at
-/// most; where a block would be of one word, and where a topic might close or the ids run out within it,
-/// words are drawn one by one with everything exact. A topic that empties within a block and gets words
-/// again before its end has never been gone.
+/// The order of draws: up to kLanes cells are entered at once, none of which may adjoin another, and their
+/// words are drawn in rounds, one of each cell side by side, each from the counts before the round. After it
+/// n_kw and n_ck are exact again. n_k in the denominator is worked out anew before the words drawn since can
+/// have changed n_k + Vβ by more than a 16th, and no more words are in a round than that; where this allows
+/// but one word, and where a topic might close or the ids run out, words are drawn one by one with everything
+/// exact. A topic that empties meanwhile and gets words again has never been gone.
 ///
-/// Whether a topic opens is drawn apart, with 53 random bits in double: its probability may be 1e-12. Which
-/// of the open ones it is, is drawn with 23 bits in float, in one fixed order of summation. No library
-/// functions: any build that obeys IEEE 754 (no fast-math, no contraction), with any instruction set, gives
-/// the same bytes.
+/// Whether a topic opens is drawn apart, with 48 random bits: its probability may be 1e-12. Which of the open
+/// ones it is, is drawn with 23 bits. All in float, in one fixed order of summation. No library functions:
+/// any build that obeys IEEE 754 (no fast-math, no contraction), with any instruction set, gives the same
+/// bytes.
 ///
 /// Cost: O(K) per word, one row of the word-major table. Memory V x K int32.
 ///
@@ -49,23 +49,25 @@ class Gibbs {
   ///         table would exceed 2^31 entries.
   Gibbs(const Hyperparameters& hyperparameters, int32_t vocabulary_size);
 
-  /// Length of every histogram over slots: K rounded up to a whole number of vectors. The slots from K on
+  /// Length of every histogram over slots: K rounded up to a multiple of kSlotsTogether. The slots from K on
   /// are never used.
-  int32_t stride() const { return table_.num_vectors * kLanes; }
+  int32_t stride() const { return table_.stride; }
 
   /// Enters a cell whose tokens are to be drawn anew; those of slot -1 have no topic yet. Fewer than
-  /// kMaxChains cells may be entered. Tokens and counts must stay where they are until the cell has left.
+  /// kLanes cells may be entered. Tokens and counts must stay where they are until the cell has left.
   /// @param cell             Its name in entered().
-  /// @param cell_counts      n_ck of all the cell's tokens, stride() long; kept up to date.
+  /// @param cell_counts      n_ck of all the cell's tokens, stride() long; up to date when it has left.
   /// @param neighbor_counts  g_σ Σ n_gk of its neighbours, stride() long; copied.
   void enter(int32_t cell, std::span<Token> tokens, std::span<int32_t> cell_counts,
              std::span<const float> neighbor_counts, Random random);
 
-  /// The cells entered, oldest first.
-  int32_t numEntered() const { return num_chains_; }
-  int32_t entered(int32_t i) const { return chains_[static_cast<size_t>(i)].cell; }
+  int32_t numEntered() const { return num_entered_; }
+  int32_t numLeft() const { return num_left_; }
+  /// The cells that left in the last advance().
+  int32_t left(int32_t i) const { return left_[static_cast<size_t>(i)]; }
 
-  /// Draws one block. Cells whose tokens are all drawn have left afterwards. At least one must be entered.
+  /// Draws some words of each. Cells whose tokens are all drawn have left afterwards. At least one must be
+  /// entered.
   void advance();
 
   /// enter() and advance() of a cell alone.
@@ -90,14 +92,21 @@ class Gibbs {
   int64_t topicCount(int32_t slot) const { return outside_[static_cast<size_t>(slot)]; }
 
  private:
+  // A cell that is entered.
+  struct Visit {
+    int32_t cell = -1;  // its name for the caller
+    int32_t lane = 0;
+    int32_t* counts = nullptr;
+  };
+
   // What the kernel reads. Its pointers lead into the members below and are set before each use.
   const Table& table();
   void noteSlots();
-  Totals refreshAll(int32_t num_running);
-  int32_t blockLength(const Totals& totals) const;
-  void drawBlock(int32_t num_running, int32_t num_rounds);
+  void refreshAll();
+  bool isConfined(int32_t num_running) const;
+  void drawTogether(int32_t num_running);
   void drawOne();
-  void openTopic(Chain& chain);
+  void openTopic(int32_t lane);
   void leave();
   int32_t* row(int32_t word) { return word_counts_.data() + static_cast<ptrdiff_t>(word) * stride(); }
 
@@ -107,14 +116,21 @@ class Gibbs {
   Table table_;
   AlignedVector<int32_t> word_counts_;   // n_kw, word-major: V rows of stride()
   AlignedVector<int32_t> outside_;       // n_k without the words of the cells entered
-  AlignedVector<int32_t> topic_counts_;  // n_k
+  AlignedVector<int32_t> topic_counts_;  // n_k when last worked out
   AlignedVector<int32_t> open_;          // -1: the slot has a topic
   AlignedVector<float> eligible_;        // 1: the slot may be drawn
   AlignedVector<float> inverse_;         // 1 / (n_k + Vβ), 0 where it may not
-  bool one_by_one_ = false;              // what opens or closes within a block would matter
+  double opening_mass_ = 0;              // γ α / V
+  bool one_by_one_ = false;              // what opens or closes meanwhile would matter
+  int32_t may_draw_ = 0;                 // how many words may be drawn from one n_k
+  int32_t num_drawn_ = 0;                // how many have been
 
-  std::array<Chain, kMaxChains> chains_;
-  int32_t num_chains_ = 0;
+  Lanes lanes_;
+  std::array<Visit, kLanes> visits_;          // those entered, oldest first
+  std::array<int32_t, kLanes> running_ = {};  // their lanes, then the free ones
+  int32_t num_entered_ = 0;
+  std::array<int32_t, kLanes> left_ = {};
+  int32_t num_left_ = 0;
 };
 
 }  // namespace shoal::topics

@@ -2,13 +2,12 @@
 #include "shoal/topics/gibbs_kernel.h"
 
 #include <algorithm>
-#include <array>
+#include <limits>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "shoal/topics/gibbs_kernel.cc"
-// Eight lanes are all there is to fill.
-#define HWY_DISABLED_TARGETS \
-  (HWY_SSSE3 | HWY_AVX3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
+// Those left out have nothing more to offer here; vectors whose length is not known have no arrays.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
 #include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
@@ -21,214 +20,338 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using Floats = hn::CappedTag<float, kLanes>;
 using Ints = hn::RebindToSigned<Floats>;
+using Words = hn::RebindToUnsigned<Floats>;
 using VF = hn::Vec<Floats>;
 using VI = hn::Vec<Ints>;
+using VW = hn::Vec<Words>;
 constexpr Floats kF;
 constexpr Ints kI;
+constexpr Words kW;
 
-// A vector of kLanes is one register of eight, two of four or eight scalars.
+// The lanes are one register of sixteen, two of eight, four of four or sixteen scalars: parts, drawn apart.
 constexpr int32_t kWidth = static_cast<int32_t>(hn::MaxLanes(Floats()));
 constexpr int32_t kParts = kLanes / kWidth;
-static_assert(kWidth == 8 || kWidth == 4 || kWidth == 1);
 
-HWY_INLINE VI asInts(hn::Mask<Floats> mask) { return hn::BitCast(kI, hn::VecFromMask(kF, mask)); }
-HWY_INLINE VI asInts(hn::Mask<Ints> mask) { return hn::VecFromMask(kI, mask); }
-HWY_INLINE int32_t countTrue(VI mask) {
-  return static_cast<int32_t>(hn::CountTrue(kI, hn::MaskFromVec(mask)));
+// What a round reads and writes beside the lanes, [lane].
+struct Round {
+  alignas(64) int32_t own[kLanes];      // slot of the token's topic, -1: it has none, or is not drawn
+  alignas(64) int32_t drawn[kLanes];    // its new one
+  alignas(64) int32_t running[kLanes];  // -1: the lane has a token to draw, 0: it has none
+  int32_t* row[kLanes];                 // n_kw of the token's word
+  int32_t order[kLanes];                // lanes that run
+};
+
+// 32 random bits: the finaliser of a good multiplicative hash (T. Wang's form, constants by C. Wellons'
+// prospector), of the lane's counter, with its key in the middle.
+HWY_INLINE VW scattered(VW counter, VW key) {
+  VW x = hn::Xor(counter, hn::ShiftRight<16>(counter));
+  x = hn::Xor(hn::Mul(x, hn::Set(kW, 0x21f0aaadu)), key);
+  x = hn::Xor(x, hn::ShiftRight<15>(x));
+  x = hn::Mul(x, hn::Set(kW, 0x735a2d97u));
+  return hn::Xor(x, hn::ShiftRight<15>(x));
 }
 
-// Prefix sums over eight lanes, by halves (Sklansky): within pairs, within fours, the lower four into the
-// upper. Sums so built never descend from lane to lane, and a lane of weight 0 has the sum of the one before.
-struct Prefix {
-  VF inclusive[kParts];
-  VF exclusive[kParts];
-  VF total;  // in every lane
-};
+HWY_INLINE VF asFloats(VW below_two_to_31) { return hn::ConvertTo(kF, hn::BitCast(kI, below_two_to_31)); }
+
+// a - 1 where the mask is set.
+HWY_INLINE VI less(VI a, hn::Mask<Ints> mask) {
+#if HWY_TARGET == HWY_AVX3
+  return hn::IfThenElse(mask, hn::Sub(a, hn::Set(kI, 1)), a);
+#else
+  return hn::Add(a, hn::VecFromMask(kI, mask));
+#endif
+}
+HWY_INLINE VI more(VI a, hn::Mask<Ints> mask) {
+#if HWY_TARGET == HWY_AVX3
+  return hn::IfThenElse(mask, hn::Add(a, hn::Set(kI, 1)), a);
+#else
+  return hn::Sub(a, hn::VecFromMask(kI, mask));
+#endif
+}
 
 #if HWY_TARGET == HWY_SCALAR
 
-HWY_INLINE Prefix prefix(const VF* values) {
-  Prefix out;
-  for (int32_t p = 0; p < kLanes; ++p) out.inclusive[p] = values[p];
-  for (int32_t half = 1; half < kLanes; half *= 2) {
-    for (int32_t p = 0; p < kLanes; ++p) {
-      if (p & half) out.inclusive[p] = hn::Add(out.inclusive[p], out.inclusive[(p | (half - 1)) - half]);
-    }
-  }
-  out.exclusive[0] = hn::Zero(kF);
-  for (int32_t p = 1; p < kLanes; ++p) out.exclusive[p] = out.inclusive[p - 1];
-  out.total = out.inclusive[kLanes - 1];
-  return out;
+HWY_INLINE void loadSlots(int32_t* const* rows, int32_t k, VI* out) {
+  for (int32_t i = 0; i < kSlotsTogether; ++i) out[i] = hn::Set(kI, rows[0][k + i]);
 }
 
 #else
 
-HWY_INLINE Prefix prefix(const VF* values) {
-  const hn::Repartition<uint64_t, Floats> pairs;
-  const VF second_half_of_four =
-      hn::BitCast(kF, asInts(hn::Gt(hn::And(hn::Iota(kI, 0), hn::Set(kI, 2)), hn::Zero(kI))));
-  VF within[kParts], last[kParts];
-  for (int32_t p = 0; p < kParts; ++p) {
-    VF z = values[p];
-    z = hn::Add(z, hn::BitCast(kF, hn::ShiftLeft<32>(hn::BitCast(pairs, z))));
-    z = hn::Add(z, hn::And(hn::BitCast(kF, hn::Broadcast<1>(hn::BitCast(kI, z))), second_half_of_four));
-    within[p] = z;
-    last[p] = hn::BitCast(kF, hn::Broadcast<3>(hn::BitCast(kI, z)));
-  }
-  Prefix out;
-#if HWY_TARGET == HWY_AVX2
-  const VF upper = hn::BitCast(kF, asInts(hn::Gt(hn::Iota(kI, 0), hn::Set(kI, 3))));
-  const VF swapped = hn::ConcatLowerUpper(kF, last[0], last[0]);
-  const VF before = hn::And(swapped, upper);
-  out.total = hn::Add(last[0], swapped);
-  out.inclusive[0] = hn::Add(within[0], before);
-  out.exclusive[0] = hn::Add(hn::ShiftLeftLanes<1>(within[0]), before);
-#else
-  out.total = hn::Add(last[0], last[1]);
-  out.inclusive[0] = within[0];
-  out.exclusive[0] = hn::ShiftLeftLanes<1>(within[0]);
-  out.inclusive[1] = hn::Add(within[1], last[0]);
-  out.exclusive[1] = hn::Add(hn::ShiftLeftLanes<1>(within[1]), last[0]);
+// Blocks of four rows, one beside the other: rows i, 4 + i, 8 + i and 12 + i.
+HWY_INLINE VI loadBlocks(int32_t* const* rows, int32_t k) {
+  VI v = hn::LoadDup128(kI, rows[0] + k);
+#if HWY_TARGET == HWY_AVX3
+  v = hn::IfThenElse(hn::Mask<Ints>{0x00F0}, hn::LoadDup128(kI, rows[4] + k), v);
+  v = hn::IfThenElse(hn::Mask<Ints>{0x0F00}, hn::LoadDup128(kI, rows[8] + k), v);
+  v = hn::IfThenElse(hn::Mask<Ints>{0xF000}, hn::LoadDup128(kI, rows[12] + k), v);
+#elif HWY_TARGET == HWY_AVX2
+  v = hn::ConcatUpperLower(kI, hn::LoadDup128(kI, rows[4] + k), v);
 #endif
-  return out;
+  return v;
+}
+
+// Slots k to k + 3 of each row: out[i] has slot k + i of all.
+HWY_INLINE void loadSlots(int32_t* const* rows, int32_t k, VI* out) {
+  const hn::Repartition<uint64_t, Ints> pairs;
+  VI row[4];
+  for (int32_t i = 0; i < 4; ++i) row[i] = loadBlocks(rows + i, k);
+  const auto low01 = hn::BitCast(pairs, hn::InterleaveLower(kI, row[0], row[1]));
+  const auto high01 = hn::BitCast(pairs, hn::InterleaveUpper(kI, row[0], row[1]));
+  const auto low23 = hn::BitCast(pairs, hn::InterleaveLower(kI, row[2], row[3]));
+  const auto high23 = hn::BitCast(pairs, hn::InterleaveUpper(kI, row[2], row[3]));
+  out[0] = hn::BitCast(kI, hn::InterleaveLower(pairs, low01, low23));
+  out[1] = hn::BitCast(kI, hn::InterleaveUpper(pairs, low01, low23));
+  out[2] = hn::BitCast(kI, hn::InterleaveLower(pairs, high01, high23));
+  out[3] = hn::BitCast(kI, hn::InterleaveUpper(pairs, high01, high23));
 }
 
 #endif
 
-Totals refreshTotals(const Table& table, const Chain* chains, int32_t num_chains, int32_t num_running,
-                     int32_t* topic_counts, float* inverse) {
-  const VF one = hn::Set(kF, 1.0F), beta_sum = hn::Set(kF, table.beta_sum);
-  VF max_inverse = hn::Zero(kF);
-  VI stale = hn::Zero(kI), confined = hn::Zero(kI);
-  for (int32_t k = 0; k < table.num_vectors * kLanes; k += kWidth) {
-    VI running = hn::Zero(kI);
-    for (int32_t j = 0; j < num_running; ++j) running = hn::Add(running, hn::LoadU(kI, chains[j].counts + k));
-    VI count = hn::Add(hn::LoadU(kI, table.outside + k), running);
-    for (int32_t j = num_running; j < num_chains; ++j) {
-      count = hn::Add(count, hn::LoadU(kI, chains[j].counts + k));
-    }
-    hn::StoreU(count, kI, topic_counts + k);
-    const VF inv =
-        hn::Mul(hn::Div(one, hn::Add(hn::ConvertTo(kF, count), beta_sum)), hn::LoadU(kF, table.eligible + k));
-    hn::StoreU(inv, kF, inverse + k);
-    max_inverse = hn::Max(max_inverse, inv);
-    const VI open = hn::LoadU(kI, table.open + k);
-    stale = hn::Or(stale, hn::Xor(open, asInts(hn::Gt(count, hn::Zero(kI)))));
-    confined = hn::Or(confined, hn::And(open, asInts(hn::Eq(count, running))));
-  }
-  return {hn::GetLane(hn::MaxOfLanes(kF, max_inverse)), countTrue(stale) > 0, countTrue(confined) > 0};
-}
-
-// One token of one chain. kVectors 0: as many as the table says. False: it is to open a topic.
-template <int32_t kVectors, bool kAllEligible>
-HWY_INLINE bool draw(const Table& table, const float* HWY_RESTRICT inverse, Chain& chain, VF* suffix,
-                     VI* word_counts, VI* cell_counts) {
-  const int32_t num_vectors = kVectors > 0 ? kVectors : table.num_vectors;
-  const int32_t at = chain.next;
-  Token& token = chain.tokens[at];
-  const int64_t stride = num_vectors * kLanes;
-  int32_t* const row = table.word_counts + token.word * stride;
-  int32_t* const counts = chain.counts;
-  const float* const prior = chain.prior.data();
-  const int32_t* const ahead =
-      table.word_counts + chain.tokens[std::min(at + 6, chain.size - 1)].word * stride;
-  const int64_t end = std::min<int64_t>(stride, 32);
-  for (int64_t k = 0; k < end; k += 16) hwy::Prefetch(ahead + k);
-
-  // Weights, and vertical sums from the last vector back: suffix[v] is the sum of those after v.
-  const VI own = hn::Set(kI, token.slot);
+// One part's draws of a round. Where a topic opens, running becomes 0 and nothing moves. True: somewhere.
+template <bool kMayOpen>
+HWY_INLINE bool drawPart(const Table& table, const float* HWY_RESTRICT inverse, Lanes& lanes, Round& round,
+                         int32_t first) {
+  const VI own = hn::Load(kI, round.own + first);
   const VF beta = hn::Set(kF, table.beta);
-  VF sum[kParts];
-  for (int32_t v = num_vectors - 1; v >= 0; --v) {
-    for (int32_t p = 0; p < kParts; ++p) {
-      const int32_t k = v * kLanes + p * kWidth, i = v * kParts + p;
-      const VI is_own = asInts(hn::Eq(own, hn::Iota(kI, k)));
-      word_counts[i] = hn::Add(hn::LoadU(kI, row + k), is_own);
-      cell_counts[i] = hn::Add(hn::LoadU(kI, counts + k), is_own);
-      const VF of_word =
-          hn::Mul(hn::Add(hn::ConvertTo(kF, word_counts[i]), beta), hn::LoadU(kF, inverse + k));
-      const VF weight =
-          hn::Mul(of_word, hn::Add(hn::ConvertTo(kF, cell_counts[i]), hn::LoadU(kF, prior + k)));
-      if (v == num_vectors - 1) {
-        suffix[i] = hn::Zero(kF);
-        sum[p] = weight;
-      } else {
-        suffix[i] = sum[p];
-        sum[p] = hn::Add(sum[p], weight);
-      }
+  int32_t* HWY_RESTRICT const counts = lanes.counts.data() + first;
+  const float* HWY_RESTRICT const prior = lanes.prior.data() + first;
+  float* HWY_RESTRICT const sums = lanes.sums.data() + first;
+  const int32_t num_slots = table.num_slots;
+  const VI one = hn::Set(kI, 1);
+  VI slot = hn::Zero(kI);
+  VF total = hn::Zero(kF);
+  for (int32_t k = 0; k < num_slots; k += kSlotsTogether) {
+    VI of_word[kSlotsTogether];
+    loadSlots(round.row + first, k, of_word);
+    VF within = hn::Zero(kF);
+    for (int32_t i = 0; i < kSlotsTogether; ++i) {
+      const int32_t at = (k + i) * kLanes;
+      const auto is_own = hn::Eq(own, slot);
+      slot = hn::Add(slot, one);
+      const VI of_cell = less(hn::Load(kI, counts + at), is_own);
+      hn::Store(of_cell, kI, counts + at);
+      const VF word_weight =
+          hn::Mul(hn::Add(hn::ConvertTo(kF, less(of_word[i], is_own)), beta), hn::Set(kF, inverse[k + i]));
+      const VF weight = hn::Mul(word_weight, hn::Add(hn::ConvertTo(kF, of_cell), hn::Load(kF, prior + at)));
+      within = i == 0 ? weight : hn::Add(within, weight);
+      hn::Store(hn::Add(total, within), kF, sums + at);
     }
-  }
-  const Prefix sums = prefix(sum);
-  if constexpr (!kAllEligible) {
-    const double mass = table.opening_mass;
-    const auto total = static_cast<double>(hn::GetLane(sums.total));
-    if (mass > 0.0 && chain.opening_uniforms[static_cast<size_t>(at)] * (total + mass) < mass) return false;
+    total = hn::Add(total, within);
   }
 
-  // The lane in which the point falls, then the vector.
-  const VF point = hn::Mul(sums.total, hn::Set(kF, chain.uniforms[static_cast<size_t>(at)]));
-  int32_t slot = 0;
-  for (int32_t p = 0; p < kParts; ++p) {
-    const VI passed = asInts(hn::Le(sums.inclusive[p], point));
-    slot += countTrue(passed);
-    VI rest = hn::AndNot(passed, asInts(hn::Le(sums.exclusive[p], point)));
-    for (int32_t v = 0; v < num_vectors; ++v) {
-      const int32_t k = v * kLanes + p * kWidth, i = v * kParts + p;
-      VI drawn = rest;
-      if (v < num_vectors - 1) {
-        VI later = asInts(hn::Le(hn::Sub(sums.inclusive[p], suffix[i]), point));
-        if constexpr (!kAllEligible) {
-          later = hn::Or(later, asInts(hn::Eq(hn::LoadU(kF, inverse + k), hn::Zero(kF))));
+  VI running = hn::Load(kI, round.running + first);
+  const VW step = hn::And(hn::BitCast(kW, running), hn::Set(kW, 0x9e3779b9u));
+  const VW counter = hn::Add(hn::Load(kW, lanes.counter.data() + first), step);
+  hn::Store(counter, kW, lanes.counter.data() + first);
+  const VW key = hn::Load(kW, lanes.key.data() + first);
+  // The midpoint of one of 2^23 equal parts of (0, 1); exact.
+  const VF uniform = hn::Mul(hn::Add(asFloats(hn::ShiftRight<9>(scattered(counter, key))), hn::Set(kF, 0.5F)),
+                             hn::Set(kF, 0x1p-23F));
+  VF point = hn::Mul(total, uniform);
+  bool opens = false;
+  if constexpr (kMayOpen) {
+    // In (0, 1] as fine as float is, from 48 bits: the probability may be 1e-12.
+    const VW coarse = scattered(counter, hn::Xor(key, hn::Set(kW, 0x5bd1e995u)));
+    const VW fine = scattered(counter, hn::Xor(key, hn::Set(kW, 0xa6c9ff3du)));
+    const VF small = hn::Add(
+        hn::Mul(asFloats(hn::ShiftRight<8>(coarse)), hn::Set(kF, 0x1p-24F)),
+        hn::Mul(hn::Add(asFloats(hn::ShiftRight<8>(fine)), hn::Set(kF, 0.5F)), hn::Set(kF, 0x1p-48F)));
+    const VF mass = hn::Set(kF, table.opening_mass);
+    const VI opening =
+        hn::BitCast(kI, hn::VecFromMask(kF, hn::Le(hn::Mul(small, hn::Add(total, mass)), mass)));
+    const VI opening_here = hn::And(opening, running);
+    opens = !hn::AllTrue(kI, hn::Eq(opening_here, hn::Zero(kI)));
+    running = hn::AndNot(opening, running);
+    hn::Store(running, kI, round.running + first);
+  }
+  // Lanes that draw nothing have no slot beyond the point.
+  point = hn::IfThenElse(hn::MaskFromVec(hn::BitCast(kF, running)), point,
+                         hn::Set(kF, std::numeric_limits<float>::infinity()));
+  VI drawn = hn::Zero(kI);
+  auto passed_before = hn::Eq(drawn, drawn);
+  for (int32_t k = 0; k < num_slots; k += kSlotsTogether) {
+    for (int32_t i = 0; i < kSlotsTogether; ++i) {
+      const int32_t at = (k + i) * kLanes;
+      const auto passed = hn::RebindMask(kI, hn::Le(hn::Load(kF, sums + at), point));
+      drawn = more(drawn, passed);
+      hn::Store(more(hn::Load(kI, counts + at), hn::AndNot(passed, passed_before)), kI, counts + at);
+      passed_before = passed;
+    }
+  }
+  hn::Store(drawn, kI, round.drawn + first);
+  return opens;
+}
+
+// What a topic that opens in one lane leaves undone. @returns the lane.
+int32_t undo(Lanes& lanes, int32_t num_running, const Round& round, int32_t num_moved) {
+  const int32_t opening = round.order[num_moved];
+  for (int32_t i = num_moved; i < num_running; ++i) {
+    const int32_t j = round.order[i];
+    if (round.own[j] >= 0) ++lanes.counts[static_cast<size_t>(round.own[j] * kLanes + j)];
+    if (round.running[j] != 0) --lanes.counts[static_cast<size_t>(round.drawn[j] * kLanes + j)];
+  }
+  return opening;
+}
+
+// Looks up the tokens `ahead` of the lanes' next ones. @returns how many lanes have one.
+int32_t lookUp(const Table& table, const Lanes& lanes, const int32_t* running, int32_t num_running,
+               int32_t ahead, Round& round) {
+  std::fill_n(round.own, kLanes, -1);
+  std::fill_n(round.running, kLanes, 0);
+  int32_t num_found = 0;
+  for (int32_t i = 0; i < num_running; ++i) {
+    const int32_t j = running[i];
+    const Token* const token = lanes.next[static_cast<size_t>(j)] + ahead;
+    if (token == lanes.end[static_cast<size_t>(j)]) continue;
+    round.own[j] = token->slot;
+    int32_t* const row = table.word_counts + int64_t{token->word} * table.stride;
+    hwy::Prefetch(row);
+    hwy::Prefetch(row + std::min(table.stride - 1, 16));
+    round.row[j] = row;
+    round.running[j] = -1;
+    round.order[num_found++] = j;
+  }
+  return num_found;
+}
+
+// The same of the tokens after the next ones, where each lane has one.
+HWY_INLINE void lookUpLater(const Table& table, const Lanes& lanes, const Round& round, int32_t num_running,
+                            Round& later) {
+  const int64_t stride = table.stride;
+  int32_t* const HWY_RESTRICT word_counts = table.word_counts;
+  const int64_t second_line = std::min<int64_t>(stride - 1, 16);
+  for (int32_t i = 0; i < num_running; ++i) {
+    const auto j = static_cast<uint32_t>(round.order[i]);
+    const Token* const token = lanes.next[j] + 1;
+    int32_t* const row = word_counts + token->word * stride;
+    hwy::Prefetch(row);
+    hwy::Prefetch(row + second_line);
+    later.own[j] = token->slot;
+    later.row[j] = row;
+  }
+}
+
+int32_t roundsUntilOneEnds(const Lanes& lanes, const Round& round, int32_t num_running) {
+  int64_t rounds = std::numeric_limits<int32_t>::max();
+  for (int32_t i = 0; i < num_running; ++i) {
+    const auto j = static_cast<size_t>(round.order[i]);
+    rounds = std::min<int64_t>(rounds, lanes.end[j] - lanes.next[j]);
+  }
+  return static_cast<int32_t>(rounds);
+}
+
+template <bool kMayOpen>
+Drawn drawRoundsOf(const Table& table, const float* inverse, Lanes& lanes, const int32_t* running,
+                   int32_t num_running, int32_t max_rounds, int32_t max_finished) {
+  Round rounds[2];  // this one, and the next, looked up meanwhile
+  for (Round& round : rounds) std::fill_n(round.row, kLanes, table.word_counts);
+  const int32_t enough = std::max(num_running - max_finished, 0);
+  Drawn result;
+  lookUp(table, lanes, running, num_running, 0, rounds[0]);
+  int32_t alike = 0;  // rounds of the same lanes
+  for (int32_t r = 0; r < max_rounds && num_running > enough; ++r) {
+    Round& round = rounds[r % 2];
+    Round& later = rounds[(r + 1) % 2];
+    int32_t num_later = num_running;
+    if (alike == 0) {
+      alike = roundsUntilOneEnds(lanes, round, num_running);
+      num_later = lookUp(table, lanes, round.order, num_running, 1, later);
+    } else if (alike == 1) {
+      num_later = lookUp(table, lanes, round.order, num_running, 1, later);
+    } else {
+      lookUpLater(table, lanes, round, num_running, later);
+    }
+    --alike;
+    bool opens = false;
+    for (int32_t first = 0; first < kLanes; first += kWidth) {
+      opens |= drawPart<kMayOpen>(table, inverse, lanes, round, first);
+    }
+    for (int32_t i = 0; i < num_running; ++i) {
+      const auto j = static_cast<uint32_t>(round.order[i]);
+      if constexpr (kMayOpen) {
+        if (opens && round.running[j] == 0) {
+          result.opening = undo(lanes, num_running, round, i);
+          return result;
         }
-        drawn = hn::AndNot(later, rest);
-        rest = hn::And(later, rest);
-        slot += kLanes * countTrue(rest);
       }
-      hn::StoreU(hn::Sub(word_counts[i], drawn), kI, row + k);
-      hn::StoreU(hn::Sub(cell_counts[i], drawn), kI, counts + k);
+      int32_t* const row = round.row[j];
+      const int32_t own = round.own[j], drawn = round.drawn[j];
+      Token* const token = lanes.next[j];
+      lanes.next[j] = token + 1;
+      token->slot = drawn;
+      ++result.num_drawn;
+      if (own >= 0) --row[own];
+      ++row[drawn];
+    }
+    num_running = num_later;
+  }
+  return result;
+}
+
+Drawn drawRoundsHere(const Table& table, const float* inverse, Lanes& lanes, const int32_t* running,
+                     int32_t num_running, int32_t max_rounds, int32_t max_finished) {
+  const auto draw = table.opening_mass > 0.0F ? drawRoundsOf<true> : drawRoundsOf<false>;
+  return draw(table, inverse, lanes, running, num_running, max_rounds, max_finished);
+}
+
+#if HWY_TARGET == HWY_SCALAR
+
+HWY_INLINE void sumsOfFour(const VI* slots, int32_t* sums) {
+  for (int32_t i = 0; i < kSlotsTogether; ++i) sums[i] += hn::GetLane(slots[i]);
+}
+
+#else
+
+// sums[i] += the sum of slots[i].
+HWY_INLINE void sumsOfFour(const VI* slots, int32_t* sums) {
+  const hn::Repartition<uint64_t, Ints> pairs;
+  const VI two01 =
+      hn::Add(hn::InterleaveLower(kI, slots[0], slots[1]), hn::InterleaveUpper(kI, slots[0], slots[1]));
+  const VI two23 =
+      hn::Add(hn::InterleaveLower(kI, slots[2], slots[3]), hn::InterleaveUpper(kI, slots[2], slots[3]));
+  const auto a = hn::BitCast(pairs, two01), b = hn::BitCast(pairs, two23);
+  const VI blocks = hn::Add(hn::BitCast(kI, hn::InterleaveLower(pairs, a, b)),
+                            hn::BitCast(kI, hn::InterleaveUpper(pairs, a, b)));
+  const hn::FixedTag<int32_t, 4> four;
+#if HWY_TARGET == HWY_AVX3
+  const hn::Half<Ints> half;
+  const auto folded = hn::Add(hn::LowerHalf(half, blocks), hn::UpperHalf(half, blocks));
+  const auto sum = hn::Add(hn::LowerHalf(four, folded), hn::UpperHalf(four, folded));
+#elif HWY_TARGET == HWY_AVX2
+  const auto sum = hn::Add(hn::LowerHalf(four, blocks), hn::UpperHalf(four, blocks));
+#else
+  const auto sum = blocks;
+#endif
+  hn::Store(hn::Add(hn::Load(four, sums), sum), four, sums);
+}
+
+#endif
+
+Totals refreshHere(const Table& table, const Lanes& lanes, const int32_t* named, int32_t num_named,
+                   int32_t* topic_counts, float* inverse) {
+  alignas(64) int32_t mask[kLanes] = {};
+  for (int32_t i = 0; i < num_named; ++i) mask[named[i]] = -1;
+  Totals totals;
+  for (int32_t k = 0; k < table.stride; k += kSlotsTogether) {
+    alignas(16) int32_t count[kSlotsTogether];
+    for (int32_t i = 0; i < kSlotsTogether; ++i) count[i] = table.outside[k + i];
+    for (int32_t first = 0; first < kLanes; first += kWidth) {
+      VI slots[kSlotsTogether];
+      for (int32_t i = 0; i < kSlotsTogether; ++i) {
+        slots[i] =
+            hn::And(hn::Load(kI, mask + first), hn::Load(kI, lanes.counts.data() + (k + i) * kLanes + first));
+      }
+      sumsOfFour(slots, count);
+    }
+    for (int32_t i = 0; i < kSlotsTogether; ++i) {
+      topic_counts[k + i] = count[i];
+      inverse[k + i] = 1.0F / (static_cast<float>(count[i]) + table.beta_sum) * table.eligible[k + i];
+      totals.max_inverse = std::max(totals.max_inverse, inverse[k + i]);
+      totals.num_words += count[i];
+      totals.stale |= (count[i] > 0) != (table.open[k + i] != 0);
     }
   }
-  token.slot = slot;
-  chain.next = at + 1;
-  return true;
-}
-
-template <int32_t kVectors, bool kAllEligible>
-int32_t drawRoundsOf(const Table& table, const float* inverse, Chain* chains, int32_t num_chains,
-                     int32_t num_rounds) {
-  constexpr int32_t kRoom = (kVectors > 0 ? kVectors : 1250) * kParts;  // 10000 topics
-  VF suffix[kRoom];
-  VI word_counts[kRoom], cell_counts[kRoom];
-  for (int32_t round = 0; round < num_rounds; ++round) {
-    for (int32_t j = 0; j < num_chains; ++j) {
-      if (!draw<kVectors, kAllEligible>(table, inverse, chains[j], suffix, word_counts, cell_counts))
-        return j;
-    }
-  }
-  return -1;
-}
-
-template <int32_t kVectors>
-int32_t drawRoundsOf(const Table& table, const float* inverse, Chain* chains, int32_t num_chains,
-                     int32_t num_rounds) {
-  return table.all_eligible ? drawRoundsOf<kVectors, true>(table, inverse, chains, num_chains, num_rounds)
-                            : drawRoundsOf<kVectors, false>(table, inverse, chains, num_chains, num_rounds);
-}
-
-int32_t drawRoundsHere(const Table& table, const float* inverse, Chain* chains, int32_t num_chains,
-                       int32_t num_rounds) {
-  switch (table.num_vectors) {
-    case 1:
-      return drawRoundsOf<1>(table, inverse, chains, num_chains, num_rounds);
-    case 2:
-      return drawRoundsOf<2>(table, inverse, chains, num_chains, num_rounds);
-    case 3:
-      return drawRoundsOf<3>(table, inverse, chains, num_chains, num_rounds);
-    case 4:
-      return drawRoundsOf<4>(table, inverse, chains, num_chains, num_rounds);
-    default:
-      return drawRoundsOf<0>(table, inverse, chains, num_chains, num_rounds);
-  }
+  return totals;
 }
 
 }  // namespace HWY_NAMESPACE
@@ -238,17 +361,23 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace shoal::topics {
 
-HWY_EXPORT(refreshTotals);
 HWY_EXPORT(drawRoundsHere);
+HWY_EXPORT(refreshHere);
 
-Totals refresh(const Table& table, const Chain* chains, int32_t num_chains, int32_t num_running,
+Lanes::Lanes(int32_t num_slots)
+    : counts(static_cast<size_t>(num_slots * kLanes)),
+      prior(static_cast<size_t>(num_slots * kLanes)),
+      sums(static_cast<size_t>(num_slots * kLanes)) {}
+
+Totals refresh(const Table& table, const Lanes& lanes, const int32_t* named, int32_t num_named,
                int32_t* topic_counts, float* inverse) {
-  return HWY_DYNAMIC_DISPATCH(refreshTotals)(table, chains, num_chains, num_running, topic_counts, inverse);
+  return HWY_DYNAMIC_DISPATCH(refreshHere)(table, lanes, named, num_named, topic_counts, inverse);
 }
 
-int32_t drawRounds(const Table& table, const float* inverse, Chain* chains, int32_t num_chains,
-                   int32_t num_rounds) {
-  return HWY_DYNAMIC_DISPATCH(drawRoundsHere)(table, inverse, chains, num_chains, num_rounds);
+Drawn drawRounds(const Table& table, const float* inverse, Lanes& lanes, const int32_t* running,
+                 int32_t num_running, int32_t max_rounds, int32_t max_finished) {
+  return HWY_DYNAMIC_DISPATCH(drawRoundsHere)(table, inverse, lanes, running, num_running, max_rounds,
+                                              max_finished);
 }
 
 std::vector<int64_t> gibbsTargets() {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -9,60 +10,72 @@
 
 namespace shoal::topics {
 
-/// Slots are weighed in vectors of this many, whatever the width of the processor's registers.
-inline constexpr int32_t kLanes = 8;
+/// Cells that are re-sampled side by side, each in a lane of its own, whatever the width of the processor's
+/// registers.
+inline constexpr int32_t kLanes = 16;
 
-/// Cells that are re-sampled in turns, so that one's draw need not wait for another's.
-inline constexpr int32_t kMaxChains = 4;
+/// Histograms over slots are whole multiples of this long.
+inline constexpr int32_t kSlotsTogether = 4;
 
-/// A cell being re-sampled: one of up to kMaxChains.
-struct Chain {
-  int32_t cell = -1;  ///< its name for the caller
-  Token* tokens = nullptr;
-  int32_t size = 0;
-  int32_t next = 0;                      ///< the token to draw next
-  int32_t* counts = nullptr;             ///< n_ck, a histogram over slots
-  AlignedVector<float> prior;            ///< α + g_σ Σ_neighbours n_gk, over slots
-  std::vector<float> uniforms;           ///< one a token, in (0, 1)
-  std::vector<double> opening_uniforms;  ///< one a token, in [0, 1), where a topic may open
+/// The cells being re-sampled, lane by lane. Matrices are [slot][lane], as many slots as a row of the table.
+struct Lanes {
+  explicit Lanes(int32_t num_slots);
+
+  AlignedVector<int32_t> counts;                       ///< n_ck
+  AlignedVector<float> prior;                          ///< α + g_σ Σ_neighbours n_gk
+  AlignedVector<float> sums;                           ///< the kernel's own
+  std::array<Token*, kLanes> next{};                   ///< the token to draw next
+  std::array<Token*, kLanes> end{};                    ///< the first that is not to be drawn
+  alignas(64) std::array<uint32_t, kLanes> counter{};  ///< names its random numbers, with the key
+  alignas(64) std::array<uint32_t, kLanes> key{};
 };
 
-/// Counts that a block of draws is made from. Arrays are over slots, `num_vectors` x kLanes long.
+/// Counts that draws are made from. Arrays are over slots, `stride` long.
 struct Table {
-  int32_t num_vectors = 0;
+  int32_t stride = 0;                ///< slots, a multiple of kSlotsTogether
+  int32_t num_slots = 0;             ///< those that are weighed, the first so many: a multiple of it too
   int32_t* word_counts = nullptr;    ///< n_kw, word-major
-  const int32_t* outside = nullptr;  ///< n_k without the words of the chains' cells
+  const int32_t* outside = nullptr;  ///< n_k without the words of the lanes' cells
   const int32_t* open = nullptr;     ///< -1: has a topic, 0: has none
   const float* eligible = nullptr;   ///< 1: may be drawn, 0: may not
   float beta = 0;
-  float beta_sum = 0;         ///< Vβ
-  double opening_mass = 0;    ///< γ α / V if a topic may open, else 0
-  bool all_eligible = false;  ///< all slots below max_topics may be drawn, and nothing opens apart
+  float beta_sum = 0;      ///< Vβ
+  float opening_mass = 0;  ///< γ α / V if a topic may open, else 0
 };
 
 /// What refresh() found.
 struct Totals {
   float max_inverse = 0;  ///< largest 1 / (n_k + Vβ) of those that may be drawn
+  int64_t num_words = 0;  ///< Σ n_k
   bool stale = false;     ///< `open` is not n_k > 0
-  bool confined = false;  ///< an open topic has no word outside the running chains' cells
 };
 
-/// n_k = outside + the chains' counts; inverse_k = 1 / (n_k + Vβ), 0 for slots that may not be drawn.
-/// @param num_running  The first so many chains are to run.
-Totals refresh(const Table& table, const Chain* chains, int32_t num_chains, int32_t num_running,
+/// n_k = outside + the counts of the lanes named; inverse_k = 1 / (n_k + Vβ), 0 for slots that may not be
+/// drawn.
+Totals refresh(const Table& table, const Lanes& lanes, const int32_t* named, int32_t num_named,
                int32_t* topic_counts, float* inverse);
 
-/// Draws a topic for `num_rounds` tokens of each chain, one of each in turn, and moves the counts. Weights:
+/// What drawRounds() did.
+struct Drawn {
+  int32_t num_drawn = 0;  ///< tokens
+  int32_t opening = -1;   ///< the lane whose next token is to open a topic; -1: none
+};
+
+/// Draws topics for the next tokens of some lanes and moves the counts. In a round one token of each lane is
+/// drawn, all from the counts as they were before the round, each without its own word (slot -1: it has
+/// none):
 ///
 ///     (n_kw + β) · inverse_k · (n_ck + prior_k)
 ///
-/// without the token's own word in n_kw and n_ck (slot -1: it has none). Float; the sums have one fixed
-/// order, the same for every instruction set, so the draws are the same bytes.
+/// Float; summed over slots in one order, lane by lane, so that any instruction set gives the same bytes. A
+/// topic opens with probability opening_mass of the total: this token is left as it is, those of the lanes
+/// after it are not drawn in this round, and the call ends.
 ///
-/// @returns the chain whose next token is to open a topic, with probability opening_mass of the total: this
-///          token is left as it is and the block ends. -1 if the block is done.
-int32_t drawRounds(const Table& table, const float* inverse, Chain* chains, int32_t num_chains,
-                   int32_t num_rounds);
+/// @param running       Lanes with tokens left, none twice: the order in which their words are moved.
+/// @param max_rounds    Ends after so many rounds,
+/// @param max_finished  or when so many lanes, at least 1, have none left.
+Drawn drawRounds(const Table& table, const float* inverse, Lanes& lanes, const int32_t* running,
+                 int32_t num_running, int32_t max_rounds, int32_t max_finished);
 
 /// The instruction sets compiled in that this processor has, for useGibbsTarget().
 std::vector<int64_t> gibbsTargets();

@@ -16,6 +16,9 @@ namespace {
 constexpr uint64_t kCellStream = 0x746f706963730001;      // "topics", 1
 constexpr uint64_t kScheduleStream = 0x746f706963730002;  // "topics", 2
 
+constexpr ptrdiff_t kAhead = 16;    // visits for which memory is fetched
+constexpr size_t kMaxWaiting = 32;  // visits that later ones may overtake
+
 }  // namespace
 
 TopicModel::TopicModel(const Hyperparameters& hyperparameters, int32_t vocabulary_size, uint64_t seed,
@@ -194,6 +197,7 @@ int32_t TopicModel::cellFor(const world::CellIndex& index) {
   if (static_cast<size_t>(c) == cells_.size()) {
     cells_.push_back({.index = index, .tokens = {}, .seen = {}});
     cell_counts_.resize(cell_counts_.size() + static_cast<size_t>(gibbs_.stride()));
+    marks_.emplace_back();
   }
   return c;
 }
@@ -203,28 +207,69 @@ TopicModel::Visit TopicModel::nextVisitOf(int32_t c, int32_t first) {
   return {c, first, Random(cell_stream_, static_cast<uint64_t>(c), draw)};
 }
 
-// Each visit begins as soon as fewer than kMaxChains others are under way, none of them in the same cell or
-// beside it; later ones wait for it.
+// Each visit begins as soon as a lane is free, unless its cell or one beside it is being visited, or is to be
+// by one that waits already: visits that can see each other keep their order.
 void TopicModel::run(const std::vector<Visit>& visits) {
-  auto visit = visits.begin();
-  while (visit != visits.end() || gibbs_.numEntered() > 0) {
-    for (; visit != visits.end() && mayEnter(visit->cell); ++visit) {
-      Cell& cell = cells_[static_cast<size_t>(visit->cell)];
-      gatherNeighbors(visit->cell, neighbor_counts_);
-      gibbs_.enter(visit->cell, std::span(cell.tokens).subspan(static_cast<size_t>(visit->first)),
-                   countsOf(visit->cell), neighbor_counts_, visit->random);
+  std::vector<const Visit*> waiting;
+  auto next = visits.begin();
+  while (next != visits.end() || !waiting.empty() || gibbs_.numEntered() > 0) {
+    if (++look_ == 0) {
+      for (Marks& marks : marks_) marks.waited_for = 0;
+      look_ = 1;
+    }
+    size_t num_waiting = 0;
+    for (const Visit* visit : waiting) {
+      if (!begin(*visit)) waiting[num_waiting++] = visit;
+    }
+    waiting.resize(num_waiting);
+    for (; next != visits.end() && gibbs_.numEntered() < kLanes && waiting.size() < kMaxWaiting; ++next) {
+      if (visits.end() - next > kAhead) prefetch(next[kAhead]);
+      if (!begin(*next)) waiting.push_back(&*next);
     }
     gibbs_.advance();
+    for (int32_t i = 0; i < gibbs_.numLeft(); ++i) {
+      forAround(gibbs_.left(i), [](Marks& marks) { --marks.num_visited; });
+    }
   }
 }
 
-bool TopicModel::mayEnter(int32_t c) const {
-  if (gibbs_.numEntered() == kMaxChains) return false;
-  for (int32_t i = 0; i < gibbs_.numEntered(); ++i) {
-    const int32_t other = gibbs_.entered(i);
-    if (other == c || neighborhood_.adjoin(other, c)) return false;
+// Fetches what begin() and the draws will read.
+void TopicModel::prefetch(const Visit& visit) const {
+  const auto fetch = [](const auto* from, size_t size) {
+    const auto* const bytes = reinterpret_cast<const char*>(from);
+    for (size_t at = 0; at < size; at += 64) __builtin_prefetch(bytes + at);
+  };
+  const std::vector<Token>& tokens = cells_[static_cast<size_t>(visit.cell)].tokens;
+  fetch(tokens.data(), std::min<size_t>(tokens.size() * sizeof(Token), 512));
+  const size_t row = std::min<size_t>(countsOf(visit.cell).size_bytes(), 256);
+  fetch(countsOf(visit.cell).data(), row);
+  for (const int32_t neighbor : neighborhood_.of(visit.cell)) {
+    fetch(countsOf(neighbor).data(), row);
+    fetch(&marks_[static_cast<size_t>(neighbor)], 1);
   }
+}
+
+bool TopicModel::begin(const Visit& visit) {
+  // First draws go one by one: they learn from each other most.
+  const bool is_first = cells_[static_cast<size_t>(visit.cell)].tokens.back().slot < 0;
+  if (gibbs_.numEntered() >= (is_first ? 1 : kLanes)) return false;
+  const Marks& marks = marks_[static_cast<size_t>(visit.cell)];
+  if (marks.num_visited > 0 || marks.waited_for == look_) {
+    forAround(visit.cell, [&](Marks& around) { around.waited_for = look_; });
+    return false;
+  }
+  Cell& cell = cells_[static_cast<size_t>(visit.cell)];
+  gatherNeighbors(visit.cell, neighbor_counts_);
+  gibbs_.enter(visit.cell, std::span(cell.tokens).subspan(static_cast<size_t>(visit.first)),
+               countsOf(visit.cell), neighbor_counts_, visit.random);
+  forAround(visit.cell, [](Marks& around) { ++around.num_visited; });
   return true;
+}
+
+template <typename Change>
+void TopicModel::forAround(int32_t c, const Change& change) {
+  change(marks_[static_cast<size_t>(c)]);
+  for (const int32_t neighbor : neighborhood_.of(c)) change(marks_[static_cast<size_t>(neighbor)]);
 }
 
 void TopicModel::gatherNeighbors(int32_t c, std::span<float> counts) const {

@@ -112,12 +112,21 @@ class TopicModel final : public Learner {
   };
   Visit nextVisitOf(int32_t cell, int32_t first);
   void run(const std::vector<Visit>& visits);
-  bool mayEnter(int32_t cell) const;
+  bool begin(const Visit& visit);
+  void prefetch(const Visit& visit) const;
+  template <typename Change>
+  void forAround(int32_t cell, const Change& change);
   void gatherNeighbors(int32_t cell, std::span<float> counts) const;
   std::span<int32_t> countsOf(int32_t cell);
   std::span<const int32_t> countsOf(int32_t cell) const;
   CellLabel label(int32_t cell, std::span<float> neighbor_counts) const;
   std::vector<TopicCounts> topics() const;
+
+  // Of a cell while visits are under way.
+  struct Marks {
+    uint32_t waited_for = 0;  // the last look at which a visit to it or beside it had to wait
+    int32_t num_visited = 0;  // how many of it and those beside it are being visited
+  };
 
   struct Adopted {
     int32_t slot;
@@ -135,6 +144,8 @@ class TopicModel final : public Learner {
   std::vector<Cell> cells_;           // by number, as in neighborhood_
   std::vector<int32_t> cell_counts_;  // n_ck, one row of gibbs_.stride() a cell
   std::vector<float> neighbor_counts_;
+  std::vector<Marks> marks_;  // by number
+  uint32_t look_ = 0;
   std::vector<Adopted> adopted_;  // in the count tables, not this robot's own
 
   SurpriseScale surprise_scale_;

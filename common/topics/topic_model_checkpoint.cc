@@ -13,7 +13,7 @@ namespace shoal::topics {
 namespace {
 
 const std::string kKind = "shoalTPM";
-constexpr uint32_t kVersion = 2;
+constexpr uint32_t kVersion = 3;
 
 }  // namespace
 

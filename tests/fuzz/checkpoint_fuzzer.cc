@@ -44,7 +44,7 @@ struct OfCells {
 
 struct OfWords {
   static constexpr const char* kKind = "shoalTPM";
-  static constexpr uint32_t kVersion = 2;
+  static constexpr uint32_t kVersion = 3;
   static TopicModel made() { return {{}, 10, 7, world::RobotId{3}}; }
   static TopicModel resumed(std::span<const uint8_t> bytes) {
     return TopicModel::resumed({}, 10, 7, world::RobotId{3}, bytes);

@@ -113,7 +113,7 @@ TEST(TopicModelCheckpointTest, LiesWithAFittingChecksumDoNoHarm) {
   const Bytes whole = small();
   constexpr size_t kFront = 8 + 4, kChecksum = 8;
   const auto withChecksum = [](const Bytes& bytes) {
-    StateWriter out("shoalTPM", 2);
+    StateWriter out("shoalTPM", 3);
     for (size_t at = kFront; at + kChecksum < bytes.size(); at += 4) {
       out.u32(bytes[at] | uint32_t{bytes[at + 1]} << 8 | uint32_t{bytes[at + 2]} << 16 |
               uint32_t{bytes[at + 3]} << 24);
