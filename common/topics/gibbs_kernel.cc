@@ -30,7 +30,6 @@ constexpr Words kW;
 
 // The lanes are one register of sixteen, two of eight, four of four or sixteen scalars: parts, drawn apart.
 constexpr int32_t kWidth = static_cast<int32_t>(hn::MaxLanes(Floats()));
-constexpr int32_t kParts = kLanes / kWidth;
 
 // What a round reads and writes beside the lanes, [lane].
 struct Round {
