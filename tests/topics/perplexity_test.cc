@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// TopicModel draws many cells side by side, with denominators that are a little old (gibbs.h). Whether what it
-// learns is as good as what the formula says, word by word and with every count exact, is seen in how well
+// TopicModel draws many cells side by side, with denominators that are a little old (gibbs.h). Whether what
+// it learns is as good as what the formula says, word by word and with every count exact, is seen in how well
 // the topics explain the words.
 #include <gtest/gtest.h>
 
