@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "shoal/wire/cell_field.h"
 
+#include <algorithm>
 #include <cstdlib>
 
 namespace shoal::wire {
@@ -66,6 +67,26 @@ bool CellField::at(int x, int y, int z) const {
 int CellField::nearestHeight(int x, int y, int z) const {
   const int32_t i = nearest(x, y, brick_[2] * kEdge + z);
   return i < 0 ? kNone : cells_[static_cast<size_t>(i)].z - brick_[2] * kEdge;
+}
+
+std::vector<CellField::Shape> CellField::shapes() const {
+  std::vector<Shape> shapes(cells_.size());
+  for (size_t i = 0; i < cells_.size(); ++i) {
+    const auto step = [&](int32_t near) {
+      if (near < 0) return uint8_t{0};
+      const int64_t height = int64_t{cells_[static_cast<size_t>(near)].z} - int64_t{cells_[i].z};
+      return static_cast<uint8_t>(std::clamp<int64_t>(height, -2, 2) + 3);
+    };
+    shapes[i].west = step(near_[i][0]);
+    shapes[i].south = step(near_[i][1]);
+    int32_t below = below_[i];
+    for (uint8_t n = 1; n <= 2 && below >= 0; ++n, below = below_[static_cast<size_t>(below)]) {
+      shapes[i].below = n;
+      uint8_t& above = shapes[static_cast<size_t>(below)].above;
+      above = std::max(above, n);
+    }
+  }
+  return shapes;
 }
 
 uint32_t CellField::heights(int x, int y) const {

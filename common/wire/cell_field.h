@@ -69,6 +69,15 @@ class CellField {
   const std::vector<world::CellIndex>& cells() const { return cells_; }
   const std::vector<NearCells>& near() const { return near_; }
 
+  /// How a cell lies among those around it.
+  struct Shape {
+    uint8_t west = 0, south = 0;   ///< height of the nearest cell there, seen from this one: -2 to 2, plus 3;
+                                   ///< 0: none was known
+    uint8_t above = 0, below = 0;  ///< cells in its column, at most 2
+  };
+  /// Of all cells, in their order. Cost: O(cells).
+  std::vector<Shape> shapes() const;
+
  private:
   // The columns of all bricks one above the other: place of the last cell added, -1 for none.
   using Tile = std::array<int32_t, size_t{mapping::kBrickEdge} * mapping::kBrickEdge>;

@@ -45,12 +45,23 @@ Candidates candidatesOf(const std::array<int32_t, kNumNear>& near) {
 // Is a neighbour unknown (0), another (1), or what is asked about (2)?
 size_t relation(int32_t near, int32_t asked) { return near < 0 ? 0 : near == asked ? 2 : 1; }
 
+// What the shape of the map says of a cell: things that stand out are labelled otherwise than the ground.
+struct Lie {
+  static constexpr size_t kStacks = 9, kForms = 6 * 6 * kStacks, kLevels = 64;
+  size_t stack, form, level;
+
+  Lie(const CellField::Shape& shape, int32_t z)
+      : stack(size_t{shape.above} * 3 + shape.below),
+        form((size_t{shape.west} * 6 + shape.south) * kStacks + stack),
+        level(static_cast<uint32_t>(z) % kLevels) {}
+};
+
 // The questions "is it the best candidate?", "the next?", ... in the light of the surroundings.
 class Questions {
  public:
   static constexpr size_t kShares = 16;
 
-  Questions() : shares_(kShares * 4 * 4), mixer_(6, 4 * 4) {
+  Questions() : shares_(kShares * 4 * 4), mixer_(7, 4 * 4) {
     for (size_t rank = 0; rank < 4; ++rank) {
       for (size_t share = 0; share < kShares; ++share) {
         for (size_t known = 0; known < 4; ++known) {
@@ -64,7 +75,7 @@ class Questions {
 
   template <typename Coder>
   int ask(Coder& coder, const Candidates& candidates, size_t rank, int32_t votes_left,
-          const std::array<int32_t, kNumNear>& near, size_t surprises, int bit) {
+          const std::array<int32_t, kNumNear>& near, size_t surprises, const Lie& lie, int bit) {
     const int32_t asked = candidates.value[rank];
     const size_t share =
         std::min<size_t>(kShares - 1, static_cast<size_t>(candidates.votes[rank] * 16 / votes_left));
@@ -73,22 +84,24 @@ class Questions {
     const size_t nearest = is(0) + 3 * is(1) + 9 * is(2) + 27 * is(3);
     const size_t second = is(4) + 3 * is(5) + 9 * is(6) + 27 * is(18);
     const size_t ring = is(7) + 3 * is(8) + 9 * is(9) + 27 * is(10);
-    const size_t outer = is(16) + 3 * is(17);
+    const size_t beside = is(0) + 3 * is(1);
     const auto label = static_cast<size_t>(std::min(asked, 31));
-    const std::array<ContextBit*, 6> contexts = {
+    const std::array<ContextBit*, 7> contexts = {
         &shares_[(rank * kShares + share) * 4 + known],
         &inner_[(rank * 81 + nearest) * 81 + second],
         &names_[(label * 81 + nearest) * 4 + rank],
         &rings_[(rank * 81 + ring) * 81 + nearest],
         &surprised_[((rank * kShares + share) * 4 + surprises) * 4 + std::min<size_t>(3, candidates.count)],
-        &outers_[((rank * 9 + outer) * 81 + second) * 9 + nearest % 9]};
+        &forms_[(label * Lie::kForms + lie.form) * 9 + beside],
+        &levels_[(((label * Lie::kLevels + lie.level) * Lie::kStacks + lie.stack) * 3 + is(18)) * 3 + is(0)]};
     return mixer_.code(coder, contexts, rank * 4 + share / 4, bit);
   }
 
  private:
   std::vector<ContextBit> shares_;
   ContextTable inner_{size_t{4} * 81 * 81}, names_{size_t{32} * 81 * 4}, rings_{size_t{4} * 81 * 81};
-  ContextTable surprised_{4 * kShares * 16}, outers_{size_t{4} * 9 * 81 * 9};
+  ContextTable surprised_{4 * kShares * 16}, forms_{32 * Lie::kForms * 9};
+  ContextTable levels_{32 * Lie::kLevels * Lie::kStacks * 9};
   BitMixer mixer_;
 };
 
@@ -163,6 +176,7 @@ bool codeIndices(Coder& coder, const CellField& field, int32_t size, Scale scale
   NewNames names(size);
   NewSteps steps;
   std::vector<uint8_t> surprise(indices.size());  // not the best candidate
+  const std::vector<CellField::Shape> shapes = field.shapes();
   for (size_t i = 0; i < indices.size(); ++i) {
     if (coder.overrun()) return false;
     std::array<int32_t, kNumNear> near{};
@@ -176,8 +190,9 @@ bool codeIndices(Coder& coder, const CellField& field, int32_t size, Scale scale
     bool known = false;
     int32_t votes_left = candidates.all_votes;
     const size_t surprises = surprised(0) + 2 * surprised(1);
+    const Lie lie(shapes[i], field.cells()[i].z);
     for (size_t rank = 0; rank < candidates.count && !known; ++rank) {
-      known = questions.ask(coder, candidates, rank, votes_left, near, surprises,
+      known = questions.ask(coder, candidates, rank, votes_left, near, surprises, lie,
                             value == candidates.value[rank] ? 1 : 0) != 0;
       if (known) value = candidates.value[rank];
       surprise[i] = rank > 0 || !known ? 1 : 0;

@@ -19,7 +19,7 @@
 namespace shoal::wire {
 
 /// The payload version this build writes and reads.
-inline constexpr uint8_t kFormat = 2;
+inline constexpr uint8_t kFormat = 3;
 
 /// Bytes of a message before its payload, fingerprint included.
 template <typename Message>

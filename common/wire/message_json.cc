@@ -79,11 +79,10 @@ json fields(const mapping::Edit& edit) {
   return j;
 }
 
-json fields(const mapping::Piece& piece, const mapping::TopicPart& topic) {
+json topicFields(const mapping::Piece& piece) {
+  const auto& topic = std::get<mapping::TopicPart>(piece.content);
   json j{{"part", piece.part},
          {"num_parts", piece.num_parts},
-         {"robot", number(piece.key.robot)},
-         {"epoch", piece.version.epoch},
          {"observation", piece.version.observation},
          {"topic", piece.key.index[0]},
          {"num_words", topic.words.size()},
@@ -136,11 +135,14 @@ json brickFields(const mapping::Piece& piece) {
 json fields(const std::vector<mapping::Piece>& pieces) {
   const mapping::Piece& first = pieces.front();
   if (const auto* edit = std::get_if<mapping::Edit>(&first.content)) return fields(*edit);
-  if (const auto* topic = std::get_if<mapping::TopicPart>(&first.content)) return fields(first, *topic);
   if (const auto* picture = std::get_if<mapping::PicturePart>(&first.content)) return fields(first, *picture);
   if (const auto* settings = std::get_if<mapping::SettingsPart>(&first.content))
     return fields(first, *settings);
   json j{{"robot", number(first.key.robot)}, {"epoch", first.version.epoch}};
+  if (std::holds_alternative<mapping::TopicPart>(first.content)) {
+    for (const mapping::Piece& piece : pieces) j["topics"].push_back(topicFields(piece));
+    return j;
+  }
   json& bricks = j[std::holds_alternative<mapping::BrickPart>(first.content) ? "bricks" : "certain_bricks"];
   for (const mapping::Piece& piece : pieces) bricks.push_back(brickFields(piece));
   return j;

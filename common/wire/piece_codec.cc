@@ -80,8 +80,8 @@ std::string faultOf(const CertaintyPart& certainty, const mapping::PieceKey& key
   return faultOfCells(certainty.cells, key.index);
 }
 
-Bytes encodeTopicMessage(const Piece& piece, int32_t mission, world::Timestamp time) {
-  const auto& topic = std::get<TopicPart>(piece.content);
+Bytes encodeTopicMessage(std::span<const Piece* const> pieces, int32_t mission, world::Timestamp time) {
+  const Piece& piece = *pieces.front();
   topics_t message{};
   message.utime = time.us;
   message.mission = mission;
@@ -91,8 +91,8 @@ Bytes encodeTopicMessage(const Piece& piece, int32_t mission, world::Timestamp t
   message.epoch = piece.version.epoch;
   message.observation = piece.version.observation;
   message.topic = static_cast<int16_t>(piece.key.index[0]);
-  message.num_words = static_cast<int32_t>(topic.words.size());
-  return pack(std::move(message), encodeTopic(topic));
+  message.num_words = static_cast<int32_t>(std::get<TopicPart>(piece.content).words.size());
+  return pack(std::move(message), encodeTopics(pieces));
 }
 
 template <typename Message>
@@ -110,7 +110,7 @@ Message frameOfBricks(std::span<const Piece* const> pieces, int16_t Message::*co
 // Of any size. The pieces are without fault, and can travel together.
 Bytes encodeValid(std::span<const Piece* const> pieces, int32_t mission, world::Timestamp time) {
   const Piece& first = *pieces.front();
-  if (std::holds_alternative<TopicPart>(first.content)) return encodeTopicMessage(first, mission, time);
+  if (std::holds_alternative<TopicPart>(first.content)) return encodeTopicMessage(pieces, mission, time);
   if (const auto* edit = std::get_if<mapping::Edit>(&first.content)) return encodeEdit(*edit, mission, time);
   if (std::holds_alternative<mapping::PicturePart>(first.content))
     return encodePictureMessage(first, mission, time);
@@ -127,19 +127,19 @@ Bytes encodeValid(const Piece& piece, int32_t mission, world::Timestamp time) {
   return encodeValid(std::span(&one, 1), mission, time);
 }
 
-Result<std::vector<Piece>> decodeTopics(std::span<const uint8_t> bytes) {
+Result<std::vector<Piece>> decodeTopicMessage(std::span<const uint8_t> bytes) {
   const auto message = unpack<topics_t>(bytes);
   if (!message) return message.error();
-  if (message->num_words < 0 || message->num_words > kMaxWordsPerPart) return DecodeError::kBadField;
-  Piece piece;
-  piece.key = {world::RobotId{message->robot}, PieceKind::kTopic, {message->topic, 0, 0}};
-  piece.version = {message->epoch, message->observation};
-  piece.part = message->part;
-  piece.num_parts = message->num_parts;
-  TopicPart topic;
-  if (!decodeTopic(message->payload, message->num_words, topic)) return DecodeError::kBadPayload;
-  piece.content = std::move(topic);
-  return std::vector{std::move(piece)};
+  if (message->num_words < 0 || message->num_words > static_cast<int32_t>(kMaxWordsPerMessage))
+    return DecodeError::kBadField;
+  std::vector<Piece> pieces(1);
+  Piece& first = pieces.front();
+  first.key = {world::RobotId{message->robot}, PieceKind::kTopic, {message->topic, 0, 0}};
+  first.version = {message->epoch, message->observation};
+  first.part = message->part;
+  first.num_parts = message->num_parts;
+  if (!decodeTopics(message->payload, message->num_words, pieces)) return DecodeError::kBadPayload;
+  return pieces;
 }
 
 template <typename Message>
@@ -186,17 +186,29 @@ size_t numCells(const Piece& piece) {
 
 // Why pieces in order of their keys cannot share a message; empty when they can.
 std::string faultTogether(std::span<const Piece* const> pieces) {
-  if (pieces.size() > kMaxBricksPerMessage) return "more than 1024";
+  const PieceKind kind = pieces.front()->key.kind;
+  if (pieces.size() > (kind == PieceKind::kTopic ? kMaxTopicsPerMessage : kMaxBricksPerMessage))
+    return "more than 1024 bricks or 256 topics";
+  size_t cells = 0, words = 0;
   for (size_t i = 0; i < pieces.size(); ++i) {
     const Piece& first = *pieces.front();
     const Piece& piece = *pieces[i];
-    if (piece.key.kind != PieceKind::kBrick && piece.key.kind != PieceKind::kCertainty)
-      return "only bricks and certainties travel together";
+    if (piece.key.kind != PieceKind::kTopic && piece.key.kind != PieceKind::kBrick &&
+        piece.key.kind != PieceKind::kCertainty)
+      return "only topics, bricks and certainties travel together";
     if (piece.key.kind != first.key.kind || piece.key.robot != first.key.robot ||
         piece.version.epoch != first.version.epoch)
       return "of several kinds, robots or epochs";
-    if (i > 0 && pieces[i - 1]->key == piece.key) return "two of one brick";
+    if (i > 0 && pieces[i - 1]->key == piece.key) return "two of one topic or brick";
+    if (const auto* topic = std::get_if<TopicPart>(&piece.content)) {
+      words += topic->words.size();
+      if (topic->group_sizes != std::get<TopicPart>(first.content).group_sizes)
+        return "of several vocabularies";
+    }
+    cells += numCells(piece);
   }
+  if (cells > kMaxCellsPerMessage) return "more than 32768 cells together";
+  if (words > kMaxWordsPerMessage) return "more than 65536 words together";
   return {};
 }
 
@@ -254,20 +266,17 @@ Bytes encode(std::span<const Piece> pieces, int32_t mission, world::Timestamp ti
     throw std::invalid_argument("time of sending out of range: " + std::to_string(time.us) + " us");
   if (pieces.empty()) throw std::invalid_argument("a message holds at least one piece");
   std::vector<const Piece*> sorted;
-  size_t cells = 0;
   for (const Piece& piece : pieces) {
     if (const std::string why = fault(piece); !why.empty()) throw std::invalid_argument("piece: " + why);
-    cells += numCells(piece);
     sorted.push_back(&piece);
   }
   if (pieces.size() > 1) {
     std::ranges::sort(sorted, {}, [](const Piece* piece) { return piece->key; });
     if (const std::string why = faultTogether(sorted); !why.empty())
       throw std::invalid_argument("pieces: " + why);
-    if (cells > kMaxCellsPerMessage) throw std::invalid_argument("pieces: more than 32768 cells together");
   }
   const auto* topic = std::get_if<TopicPart>(&pieces.front().content);
-  if (topic != nullptr && topic->words.size() > kMaxWordsPerPart) {
+  if (topic != nullptr && topic->words.size() > kMaxWordsPerMessage) {
     throw std::invalid_argument("piece: more than 65536 words in a part: cut it to fit first");
   }
   return checkedSize(encodeValid(sorted, mission, time), "piece");
@@ -276,9 +285,7 @@ Bytes encode(std::span<const Piece> pieces, int32_t mission, world::Timestamp ti
 std::optional<Bytes> encodeTogether(std::span<const Piece* const> pieces, int32_t mission) {
   std::vector<const Piece*> sorted(pieces.begin(), pieces.end());
   std::ranges::sort(sorted, {}, [](const Piece* piece) { return piece->key; });
-  size_t cells = 0;
-  for (const Piece* piece : sorted) cells += numCells(*piece);
-  if (sorted.empty() || cells > kMaxCellsPerMessage || !faultTogether(sorted).empty()) return std::nullopt;
+  if (sorted.empty() || !faultTogether(sorted).empty()) return std::nullopt;
   return encodeValid(sorted, mission, {});
 }
 
@@ -320,7 +327,7 @@ std::vector<Piece> cutToFit(const Piece& whole, size_t max_payload) {
       return a.count != b.count ? a.count > b.count : a.word < b.word;
     });
     return cut([&](size_t begin, size_t end) { return partOf(*topic, ranked, begin, end); }, ranked.size(),
-               kMaxWordsPerPart);
+               kMaxWordsPerMessage);
   }
   const auto run = [](const auto& content) {
     return [&content](size_t begin, size_t end) {
@@ -339,7 +346,8 @@ std::vector<Piece> cutToFit(const Piece& whole, size_t max_payload) {
 
 std::vector<EncodedPart> encodeToFit(const Piece& whole, size_t max_payload, int32_t mission) {
   const auto* topic = std::get_if<TopicPart>(&whole.content);
-  const bool may_fit = whole.num_parts == 1 && (topic == nullptr || topic->words.size() <= kMaxWordsPerPart);
+  const bool may_fit =
+      whole.num_parts == 1 && (topic == nullptr || topic->words.size() <= kMaxWordsPerMessage);
   if (may_fit && fault(whole).empty()) {
     Bytes message = encodeValid(whole, mission, {});
     if (message.size() <= std::min(max_payload, kMaxMessageBytes)) return {{whole, std::move(message)}};
@@ -356,7 +364,7 @@ Result<std::vector<Piece>> decodePieces(MessageKind kind, std::span<const uint8_
   auto decoded = [&]() -> Result<std::vector<Piece>> {
     switch (kind) {
       case MessageKind::kTopics:
-        return decodeTopics(bytes);
+        return decodeTopicMessage(bytes);
       case MessageKind::kBrick:
         return decodeCells<bricks_t>(bytes, PieceKind::kBrick, &bricks_t::bricks, decodeBricks);
       case MessageKind::kCertainty:

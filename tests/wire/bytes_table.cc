@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// shoal_wire_bytes [RUN...]: what maps and topics take on the wire beside what general coders make of them,
-// as the tables of docs/benchmarks.md. A RUN is the folder of a finished mission. With cjxl (libjxl-tools)
-// and draco_encoder (draco) in the PATH, lossless JPEG XL and Draco too.
+// shoal_wire_bytes [WORLD[@IMAGES]...]: what maps and topics take on the wire beside what general coders make
+// of them, as the tables of docs/benchmarks.md. Twelve robots fly over each world in this process, 60 images
+// each unless said. With cjxl (libjxl-tools) and draco_encoder (draco) in the PATH, lossless JPEG XL and
+// Draco too.
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
@@ -13,39 +15,20 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
+#include "flight.h"
 #include "label_field.h"
 #include "other_coders.h"
-#include "shoal/mapping/atomic_file.h"
-#include "shoal/mapping/belief_files.h"
 #include "shoal/mapping/belief_pieces.h"
-#include "shoal/mapping/map_files.h"
 #include "shoal/random.h"
-#include "shoal/wire/cut.h"
-#include "shoal/wire/limits.h"
 #include "shoal/wire/piece_codec.h"
+#include "state_cost.h"
 
 namespace {
 
 using namespace shoal;  // NOLINT: a main file
 namespace fs = std::filesystem;
 
-// What a channel like SHOAL_R00_BRICK adds to a message in a datagram: LCM's header, the name, its NUL.
-constexpr size_t kAround = 8 + 15 + 1;
-constexpr size_t kFixedTopics = 45, kFixedBricks = 35;
-
-struct Cost {
-  size_t payload = 0;    // bytes of payloads
-  size_t datagrams = 0;  // with fixed fields, channel and LCM's header
-  size_t count = 0;
-};
-
-void add(Cost& cost, size_t message, size_t fixed) {
-  cost.payload += message - fixed;
-  cost.datagrams += message + kAround;
-  ++cost.count;
-}
+using wire::Cost;
 
 std::map<std::array<int32_t, 3>, mapping::BrickPart> bricksOf(const std::vector<mapping::BrickCell>& cells) {
   std::map<std::array<int32_t, 3>, mapping::BrickPart> bricks;
@@ -60,27 +43,7 @@ std::vector<mapping::Piece> piecesOf(const std::vector<mapping::BrickCell>& cell
   return pieces;
 }
 
-// As many bricks a message as fit.
-std::vector<wire::Bytes> messagesOf(const std::vector<mapping::Piece>& pieces) {
-  const auto fits = [&](size_t begin, size_t end) {
-    try {
-      return wire::encode(std::span(pieces).subspan(begin, end - begin), 1, {}).size() <=
-             wire::maxPayload(16);
-    } catch (const std::invalid_argument&) {
-      return false;  // too long, or too many cells
-    }
-  };
-  std::vector<wire::Bytes> messages;
-  for (const auto& [begin, end] : wire::cutRuns(pieces.size(), wire::kMaxBricksPerMessage, fits))
-    messages.push_back(wire::encode(std::span(pieces).subspan(begin, end - begin), 1, {}));
-  return messages;
-}
-
-Cost costOfBricks(const std::vector<mapping::BrickCell>& cells) {
-  Cost cost;
-  for (const wire::Bytes& message : messagesOf(piecesOf(cells))) add(cost, message.size(), kFixedBricks);
-  return cost;
-}
+Cost costOfBricks(const std::vector<mapping::BrickCell>& cells) { return wire::costOf(piecesOf(cells)); }
 
 // Ideal code length, bytes, of numbers whose distribution is learned on the way: a number seen c times among
 // n so far, d of them distinct, costs -log2(c / (n + d)); a new one -log2(d / (n + d)) and Elias' gamma code
@@ -128,18 +91,35 @@ NamedMap synthetic(double speckle) {
   return map;
 }
 
-double cellSizeOf(const std::string& run) {
-  return nlohmann::json::parse(mapping::readFile(run + "/summary.json")).at("cell_size_m").get<double>();
+// A mission flown.
+struct Mission {
+  std::string name;
+  wire::Team team;
+};
+
+Mission fly(const std::string& what) {
+  const size_t at = what.find('@');
+  const std::string world = what.substr(0, at);
+  int32_t images = 60;
+  if (at != std::string::npos) {
+    const char* const end = what.data() + what.size();
+    const auto read = std::from_chars(what.data() + at + 1, end, images);
+    if (read.ec != std::errc{} || read.ptr != end || images < 1)
+      throw std::invalid_argument(what + ": images after @ are a number from 1 on");
+  }
+  const std::string name = fs::path(world).filename().string();
+  return {images == 60 ? name : name + ", " + std::to_string(images) + " images",
+          wire::learn(wire::look(world, images), 1, wire::usualKnobs())};
 }
 
-NamedMap fusedMapOf(const std::string& run) {
-  NamedMap map{fs::path(run).filename().string() + ", fused", {}};
+NamedMap fusedMapOf(const Mission& mission) {
+  NamedMap map{mission.name, {}};
   std::map<world::GlobalLabel, int32_t> numbers;
-  for (const auto& c : mapping::readGlobalMap(run, world::Grid(cellSizeOf(run))).cells) {
+  for (const auto& c : wire::fused(mission.team).cells) {
     const auto next = static_cast<int32_t>(numbers.size());
     map.cells.push_back({c.cell, world::TopicId{numbers.emplace(c.label, next).first->second}, {}});
   }
-  if (numbers.size() > 255) throw std::runtime_error(run + ": more than 255 labels");
+  if (numbers.size() > 255) throw std::runtime_error(mission.name + ": more than 255 labels");
   return map;
 }
 
@@ -190,108 +170,111 @@ void printLabels(const NamedMap& map) {
               cost.datagrams, ratio(cost.datagrams, zstd));
 }
 
-void printTopics(const std::string& run) {
-  const world::Grid grid(cellSizeOf(run));
+// Topics of one robot as whole pieces with their exact counts.
+std::vector<mapping::Piece> exactTopics(const mapping::LocalBelief& belief) {
+  std::vector<int32_t> sizes;
+  for (const auto& group : belief.groups) sizes.push_back(group.size);
+  std::vector<mapping::Piece> pieces;
+  for (const auto& topic : belief.topics) {
+    const mapping::PieceKey key{belief.robot, mapping::PieceKind::kTopic, {number(topic.id), 0, 0}};
+    pieces.push_back(
+        {key, {0, 59}, 0, 1, mapping::TopicPart{topic.created, topic.weight, sizes, topic.words}});
+  }
+  return pieces;
+}
+
+size_t float32BytesOf(const mapping::LocalBelief& belief) {
+  size_t words = 0;
+  for (const auto& group : belief.groups) words += static_cast<size_t>(group.size);
+  return 4 * words * belief.topics.size();
+}
+
+double adaptiveEntropyOf(const mapping::LocalBelief& belief) {
+  double bytes = 0;
+  for (const auto& group : belief.groups) {
+    AdaptiveEntropy entropy;
+    for (const auto& topic : belief.topics) {
+      std::map<int32_t, int32_t> counts;
+      for (const auto& [word, count] : topic.words) counts[word] = count;
+      for (int32_t word = group.first; word < group.first + group.size; ++word)
+        entropy.add(counts.contains(word) ? counts.at(word) : 0);
+    }
+    bytes += entropy.bytes();
+  }
+  return bytes;
+}
+
+// The greatest 1 - cosine of coarse topics to the exact counts.
+double worstCosineOf(mapping::LocalBelief belief) {
+  belief.detail = mapping::Detail::kCoarse;
+  const std::vector<mapping::Piece> pieces = mapping::wholePieces(belief);
+  double worst = 0;
+  for (size_t i = 0; i < belief.topics.size(); ++i) {  // topics come first
+    std::map<int32_t, double> exact;
+    double squares = 0, coarse_squares = 0, product = 0;
+    for (const auto& [word, count] : belief.topics[i].words) {
+      exact[word] = count;
+      squares += static_cast<double>(count) * count;
+    }
+    for (const auto& [word, level] : std::get<mapping::TopicPart>(pieces[i].content).words) {
+      coarse_squares += static_cast<double>(level) * level;
+      product += exact.at(word) * level;
+    }
+    worst = std::max(worst, 1 - product / std::sqrt(squares * coarse_squares));
+  }
+  return worst;
+}
+
+void printTopics(const Mission& mission) {
   Cost cost;
   double ideal = 0;
   size_t topics = 0, non_zero = 0, float32 = 0;
-  for (const auto& folder : fs::directory_iterator(run + "/robots")) {
-    const auto robot = world::parseRobotId(folder.path().filename().string());
-    const mapping::LocalBelief belief = mapping::readBelief(folder.path(), robot.value(), grid);
-    std::vector<AdaptiveEntropy> of_group(belief.groups.size());
-    for (const auto& topic : belief.topics) {
-      mapping::TopicPart part{topic.created, topic.weight, {}, topic.words};
-      std::map<int32_t, int32_t> counts;
-      for (const auto& [word, count] : topic.words) counts[word] = count;
-      for (size_t g = 0; g < belief.groups.size(); ++g) {
-        const auto& group = belief.groups[g];
-        part.group_sizes.push_back(group.size);
-        float32 += 4 * static_cast<size_t>(group.size);
-        for (int32_t word = group.first; word < group.first + group.size; ++word)
-          of_group[g].add(counts.contains(word) ? counts.at(word) : 0);
-      }
-      ++topics;
-      non_zero += topic.words.size();
-      const mapping::Piece whole{
-          {*robot, mapping::PieceKind::kTopic, {number(topic.id), 0, 0}}, {0, 59}, 0, 1, std::move(part)};
-      for (const mapping::Piece& each : wire::cutToFit(whole, wire::maxPayload(16)))
-        add(cost, wire::encode(each, 1, {}).size(), kFixedTopics);
-    }
-    for (const auto& group : of_group) ideal += group.bytes();
+  for (const mapping::LocalBelief& belief : mission.team) {
+    const Cost own = wire::costOf(exactTopics(belief));
+    cost.payload += own.payload;
+    cost.datagrams += own.datagrams;
+    ideal += adaptiveEntropyOf(belief);
+    float32 += float32BytesOf(belief);
+    topics += belief.topics.size();
+    for (const auto& topic : belief.topics) non_zero += topic.words.size();
   }
-  std::printf("| %s | %zu | %zu | %zu | %.0f | %zu (%.2f) | %zu |\n",
-              fs::path(run).filename().string().c_str(), topics, non_zero, float32, ideal, cost.payload,
-              static_cast<double>(cost.payload) / ideal, cost.datagrams);
+  std::printf("| %s | %zu | %zu | %zu | %.0f | %zu (%.2f) | %zu |\n", mission.name.c_str(), topics, non_zero,
+              float32, ideal, cost.payload, static_cast<double>(cost.payload) / ideal, cost.datagrams);
 }
 
 // All that a robot would have to tell somebody who knows nothing, of all robots the mean and the most:
 // datagrams with fixed fields, channel and LCM's header.
-void printState(const std::string& run, mapping::Detail detail) {
-  const world::Grid grid(cellSizeOf(run));
-  Cost topics, labels, certainties;
-  size_t robots = 0, most = 0;
-  for (const auto& folder : fs::directory_iterator(run + "/robots")) {
-    const auto robot = world::parseRobotId(folder.path().filename().string());
-    mapping::LocalBelief belief = mapping::readBelief(folder.path(), robot.value(), grid);
+void printState(const Mission& mission, mapping::Detail detail) {
+  size_t topics = 0, labels = 0, certainties = 0, robots = 0, most = 0;
+  for (mapping::LocalBelief belief : mission.team) {
     belief.detail = detail;
-    std::map<mapping::PieceKind, std::vector<mapping::Piece>> pieces;
-    for (mapping::Piece& piece : mapping::wholePieces(belief))
-      pieces[piece.key.kind].push_back(std::move(piece));
-    Cost own;
-    for (const mapping::Piece& whole : pieces[mapping::PieceKind::kTopic]) {
-      for (const mapping::Piece& each : wire::cutToFit(whole, wire::maxPayload(16))) {
-        const size_t size = wire::encode(each, 1, {}).size();
-        add(topics, size, kFixedTopics);
-        add(own, size, kFixedTopics);
-      }
-    }
-    for (auto& [kind, cost] : {std::pair<mapping::PieceKind, Cost&>(mapping::PieceKind::kBrick, labels),
-                               {mapping::PieceKind::kCertainty, certainties}}) {
-      for (const wire::Bytes& message : messagesOf(pieces[kind])) {
-        add(cost, message.size(), kFixedBricks);
-        add(own, message.size(), kFixedBricks);
-      }
-    }
+    const wire::StateCost own = wire::costOfState(belief);
+    topics += own.topics.datagrams;
+    labels += own.labels.datagrams;
+    certainties += own.certainties.datagrams;
+    most = std::max(most, own.datagrams());
     ++robots;
-    most = std::max(most, own.datagrams);
   }
-  std::printf("| %s | %s | %zu | %zu | %zu | %zu | %zu |\n", fs::path(run).filename().string().c_str(),
-              std::string(mapping::toText(detail)).c_str(), topics.datagrams / robots,
-              labels.datagrams / robots, certainties.datagrams / robots,
-              (topics.datagrams + labels.datagrams + certainties.datagrams) / robots, most);
+  std::printf("| %s | %s | %zu | %zu | %zu | %zu | %zu |\n", mission.name.c_str(),
+              std::string(mapping::toText(detail)).c_str(), topics / robots, labels / robots,
+              certainties / robots, (topics + labels + certainties) / robots, most);
 }
 
-// How far coarse topics are from the exact counts, and what they take: payloads of all robots' topics.
-void printCoarse(const std::string& run) {
-  const world::Grid grid(cellSizeOf(run));
+// What coarse topics of all robots take, and how far they are from the exact counts.
+void printCoarse(const Mission& mission) {
+  Cost cost;
   size_t float32 = 0;
   double worst = 0;
-  Cost cost;
-  for (const auto& folder : fs::directory_iterator(run + "/robots")) {
-    const auto robot = world::parseRobotId(folder.path().filename().string());
-    mapping::LocalBelief belief = mapping::readBelief(folder.path(), robot.value(), grid);
+  for (mapping::LocalBelief belief : mission.team) {
+    float32 += float32BytesOf(belief);
+    worst = std::max(worst, worstCosineOf(belief));
     belief.detail = mapping::Detail::kCoarse;
-    const std::vector<mapping::Piece> pieces = mapping::wholePieces(belief);
-    for (size_t i = 0; i < belief.topics.size(); ++i) {  // topics come first
-      for (const auto& group : belief.groups) float32 += 4 * static_cast<size_t>(group.size);
-      std::map<int32_t, double> exact;
-      double squares = 0, coarse_squares = 0, product = 0;
-      for (const auto& [word, count] : belief.topics[i].words) {
-        exact[word] = count;
-        squares += static_cast<double>(count) * count;
-      }
-      for (const auto& [word, level] : std::get<mapping::TopicPart>(pieces[i].content).words) {
-        coarse_squares += static_cast<double>(level) * level;
-        product += exact.at(word) * level;
-      }
-      worst = std::max(worst, 1 - product / std::sqrt(squares * coarse_squares));
-      for (const mapping::Piece& each : wire::cutToFit(pieces[i], wire::maxPayload(16)))
-        add(cost, wire::encode(each, 1, {}).size(), kFixedTopics);
-    }
+    const Cost own = wire::costOfState(belief).topics;
+    cost.payload += own.payload;
+    cost.datagrams += own.datagrams;
   }
-  std::printf("| %s | %zu | %zu (1/%.0f) | %zu | %.4f |\n", fs::path(run).filename().string().c_str(),
-              float32, cost.payload, static_cast<double>(float32) / static_cast<double>(cost.payload),
-              cost.datagrams, worst);
+  std::printf("| %s | %zu | %zu (1/%.0f) | %zu | %.4f |\n", mission.name.c_str(), float32, cost.payload,
+              static_cast<double>(float32) / static_cast<double>(cost.payload), cost.datagrams, worst);
 }
 
 // CPU milliseconds to encode all bricks once it is known how many fit into each message, and to decode (and
@@ -302,7 +285,7 @@ void printTimes(const NamedMap& map) {
   };
   const std::vector<mapping::Piece> pieces = piecesOf(map.cells);
   std::vector<size_t> bricks;  // of each message
-  std::vector<wire::Bytes> messages = messagesOf(pieces);
+  std::vector<wire::Bytes> messages = wire::messagesOf(pieces);
   for (const wire::Bytes& bytes : messages)
     bricks.push_back(wire::decodePieces(wire::MessageKind::kBrick, bytes)->size());
   messages.clear();
@@ -321,33 +304,35 @@ void printTimes(const NamedMap& map) {
               map.name.c_str(), encode_ms, milliseconds(decoding));
 }
 
-void run(std::span<char*> runs) {
+void printMissions(const std::vector<Mission>& missions) {
+  std::puts("\n| mission | topics | counts > 0 | float32 | adaptive entropy | ours, payloads | ours, all |");
+  std::puts("|---|---|---|---|---|---|---|");
+  for (const Mission& mission : missions) printTopics(mission);
+  std::puts("\n| mission | float32 | coarse topics, payloads | all | greatest 1 - cosine |");
+  std::puts("|---|---|---|---|---|");
+  for (const Mission& mission : missions) printCoarse(mission);
+  std::puts("\n| mission | detail | topics | labels and times | certainties | all, mean | most |");
+  std::puts("|---|---|---|---|---|---|---|");
+  for (const Mission& mission : missions)
+    for (const auto detail : {mapping::Detail::kFine, mapping::Detail::kCoarse}) printState(mission, detail);
+}
+
+void run(std::span<char*> worlds) {
   const std::vector<NamedMap> fields{synthetic(0), synthetic(0.03)};
+  std::vector<Mission> missions;
+  for (const char* world : worlds) missions.push_back(fly(world));
+  std::vector<NamedMap> maps;
+  for (const Mission& mission : missions) maps.push_back(fusedMapOf(mission));
   std::puts("\n| map | cells | zstd -19 | JPEG XL | ours, payloads | datagrams | ours, all |");
   std::puts("|---|---|---|---|---|---|---|");
   for (const NamedMap& map : fields) printLabels(map);
-  for (const char* folder : runs) printLabels(fusedMapOf(folder));
+  for (const NamedMap& map : maps) printLabels(map);
   std::puts(
       "\n| solid map | cells | Draco | OctoMap .ot | ours, payloads | ours, all (of Draco, of OctoMap) |");
   std::puts("|---|---|---|---|---|---|");
   printSolid(legs());
-  for (const char* folder : runs) printSolid(fusedMapOf(folder));
-  if (!runs.empty())
-    std::puts(
-        "\n| mission | topics | counts > 0 | float32 | adaptive entropy | ours, payloads | ours, all |");
-  if (!runs.empty()) std::puts("|---|---|---|---|---|---|---|");
-  for (const char* folder : runs) printTopics(folder);
-  if (!runs.empty()) {
-    std::puts("\n| mission | float32 | coarse topics, payloads | all | greatest 1 - cosine |");
-    std::puts("|---|---|---|---|---|");
-  }
-  for (const char* folder : runs) printCoarse(folder);
-  if (!runs.empty()) {
-    std::puts("\n| mission | detail | topics | labels and times | certainties | all, mean | most |");
-    std::puts("|---|---|---|---|---|---|---|");
-  }
-  for (const char* folder : runs)
-    for (const auto detail : {mapping::Detail::kFine, mapping::Detail::kCoarse}) printState(folder, detail);
+  for (const NamedMap& map : maps) printSolid(map);
+  if (!missions.empty()) printMissions(missions);
   printTimes(fields.back());
 }
 

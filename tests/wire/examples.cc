@@ -72,6 +72,21 @@ Piece topic() {
   return {{RobotId{3}, PieceKind::kTopic, {12, 0, 0}}, {1, 60}, 1, 3, part};
 }
 
+// One alone, one that is no more, a part of one.
+std::vector<Piece> topics() {
+  std::vector<Piece> pieces(3, topic());
+  pieces[0].key.index[0] = 4;
+  pieces[0].version.observation = 55;
+  pieces[0].part = 0;
+  pieces[0].num_parts = 1;
+  std::get<TopicPart>(pieces[0].content) = {{8'000'000}, 5006, {200, 64}, {{3, 20}, {17, 10}, {201, 500}}};
+  pieces[1].key.index[0] = 5;
+  pieces[1].part = 0;
+  pieces[1].num_parts = 1;
+  std::get<TopicPart>(pieces[1].content) = {{0}, 0, {200, 64}, {}};
+  return pieces;
+}
+
 std::vector<Piece> bricks() {
   BrickPart part;
   for (int x = 0; x < 4; ++x) {
@@ -172,6 +187,7 @@ std::vector<Example> goldenExamples() {
   std::vector<Example> examples;
   examples.push_back({"heartbeat", MessageKind::kHeartbeat, encode(heartbeat())});
   examples.push_back({"topics", MessageKind::kTopics, encode(topic(), kMission, time)});
+  examples.push_back({"topics_shared", MessageKind::kTopics, encode(topics(), kMission, time)});
   examples.push_back({"bricks", MessageKind::kBrick, encode(bricks(), kMission, time)});
   examples.push_back({"certainties", MessageKind::kCertainty, encode(certainties(), kMission, time)});
   examples.push_back({"matches", MessageKind::kMatches, encodeMatches(matches(), 77, kMission, time).at(0)});

@@ -104,7 +104,7 @@ class Messages(unittest.TestCase):
     def test_another_format_is_refused_by_that_reason(self):
         for data in golden().values():
             with self.assertRaises(shoal_reader.BadMessage) as caught:
-                shoal_reader.decode(data[:20] + b"\1" + data[21:])
+                shoal_reader.decode(data[:20] + b"\2" + data[21:])
             self.assertEqual(caught.exception.reason, "unknown format")
 
     def test_a_datagram_is_header_channel_and_message(self):

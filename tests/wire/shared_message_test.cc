@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Several bricks in one message.
+// Several bricks, or topics, in one message.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,8 +7,11 @@
 
 #include "examples.h"
 #include "shoal/random.h"
+#include "shoal/wire/checksum.h"
 #include "shoal/wire/limits.h"
+#include "shoal/wire/message_kind.h"
 #include "shoal/wire/piece_codec.h"
+#include "shoal/wire/repair_codec.h"
 
 namespace shoal::wire {
 namespace {
@@ -17,6 +20,7 @@ using mapping::BrickPart;
 using mapping::CertaintyPart;
 using mapping::Piece;
 using mapping::PieceKind;
+using mapping::TopicPart;
 
 // Bricks of one robot at random places, sorted, some of them parts.
 std::vector<Piece> someBricks(int count, double density, Random& random) {
@@ -111,6 +115,109 @@ TEST(EncodeTogetherTest, SaysWhatThePiecesSayOrNothing) {
   const Piece topic = topicPiece(3, 100, 1, 9, random);
   const std::vector<const Piece*> topics = {&topic, &topic};
   EXPECT_FALSE(encodeTogether(topics, 6));
+}
+
+// Topics of one robot and vocabulary, ascending, some of them parts, some that are no more.
+std::vector<Piece> someTopics(int count, int words, Random& random) {
+  std::vector<Piece> pieces;
+  for (int i = 0, id = -1; i < count; ++i) {
+    Piece piece = topicPiece(1 + words * (i % 4), 4 * words + 100, 5, 1 + 1000 * (i % 3), random);
+    id += 1 + static_cast<int32_t>(random.below(30));
+    piece.key = {world::RobotId{4}, PieceKind::kTopic, {id, 0, 0}};
+    piece.version = {2, static_cast<int32_t>(random.below(i % 2 == 0 ? 300 : 0x80000000))};
+    auto& topic = std::get<TopicPart>(piece.content);
+    topic.created.us = static_cast<int64_t>(random.below(1000)) * 500'000;
+    if (random.below(5) == 0) topic = {{0}, 0, topic.group_sizes, {}};
+    if (random.below(4) == 0) {
+      piece.num_parts = 2 + static_cast<int32_t>(random.below(254));
+      piece.part = static_cast<int32_t>(random.below(static_cast<uint64_t>(piece.num_parts)));
+    }
+    pieces.push_back(piece);
+  }
+  return pieces;
+}
+
+TEST(SharedTopicsTest, KeepsEveryTopic) {
+  Random random(4);
+  for (int trial = 0; trial < 60; ++trial) {
+    const auto pieces = someTopics(1 + trial % 12, trial % 3 == 0 ? 0 : 20, random);
+    const Bytes bytes = encode(pieces, 9, {77});
+    const auto decoded = decodePieces(MessageKind::kTopics, bytes);
+    ASSERT_TRUE(decoded.ok()) << name(decoded.error());
+    EXPECT_TRUE(*decoded == pieces);
+    auto shuffled = pieces;
+    std::ranges::reverse(shuffled);
+    EXPECT_EQ(encode(shuffled, 9, {77}), bytes);
+  }
+}
+
+// Fields, vocabulary and what was learnt of gaps and counts are said once. 45 bytes of fixed fields and 14 of
+// group sizes and times for each of eight topics are most of it.
+TEST(SharedTopicsTest, TakesLessThanAloneByWhatIsSaidOnce) {
+  Random random(5);
+  std::vector<Piece> pieces;
+  size_t alone = 0;
+  for (int i = 0; i < 8; ++i) {
+    pieces.push_back(topicPiece(30, 1200, 7, 9, random));
+    pieces.back().key = {world::RobotId{1}, PieceKind::kTopic, {3 * i, 0, 0}};
+    pieces.back().version.epoch = 0;
+    alone += encode(pieces.back(), 1, {}).size();
+  }
+  EXPECT_LT(encode(pieces, 1, {}).size() + 7 * (45 + 14), alone);
+}
+
+TEST(SharedTopicsTest, RefusesWhatCannotShare) {
+  Random random(6);
+  const auto topics = someTopics(2, 10, random);
+  const auto refused = [&](auto change) {
+    auto pieces = topics;
+    change(pieces[1]);
+    EXPECT_THROW(encode(pieces, 1, {}), std::invalid_argument);
+  };
+  EXPECT_NO_THROW(encode(topics, 1, {}));
+  refused([&](Piece& p) { p.key.robot = world::RobotId{5}; });
+  refused([&](Piece& p) { p.version.epoch = 3; });
+  refused([&](Piece& p) { p.key = topics[0].key; });
+  refused([&](Piece& p) { std::get<TopicPart>(p.content).group_sizes.push_back(1); });
+  refused([&](Piece& p) { p = someBricks(1, 0, random)[0]; });
+}
+
+TEST(SharedTopicsTest, HasACapOnTopicsAndOnWords) {
+  std::vector<Piece> pieces;
+  for (int i = 0; i < 257; ++i)
+    pieces.push_back(
+        {{world::RobotId{0}, PieceKind::kTopic, {i, 0, 0}}, {0, 1}, 0, 1, TopicPart{{0}, 1, {9}, {}}});
+  EXPECT_THROW(encode(pieces, 1, {}), std::invalid_argument);
+  pieces.pop_back();
+  EXPECT_TRUE(decodePieces(MessageKind::kTopics, encode(pieces, 1, {})).ok());
+
+  TopicPart full{{0}, 1, {40000}, {}};
+  for (int32_t word = 0; word < 32769; ++word) full.words.push_back({word, 1});
+  pieces = {{{world::RobotId{0}, PieceKind::kTopic, {0, 0, 0}}, {0, 1}, 0, 1, full},
+            {{world::RobotId{0}, PieceKind::kTopic, {1, 0, 0}}, {0, 1}, 0, 1, full}};
+  EXPECT_THROW(encode(pieces, 1, {}), std::invalid_argument);
+  for (Piece& piece : pieces) std::get<TopicPart>(piece.content).words.pop_back();
+  const auto decoded = decodePieces(MessageKind::kTopics, encode(pieces, 1, {}));  // 65536 words alike
+  ASSERT_TRUE(decoded.ok());
+  EXPECT_TRUE(*decoded == pieces);
+}
+
+// A repair holds one topic.
+TEST(SharedTopicsTest, IsNoRepair) {
+  Random random(7);
+  const auto topics = someTopics(2, 10, random);
+  Bytes whole = encode(topics, 1, {});
+  Bytes repair = encodeRepair(topics[0], 1, {});
+  const Bytes alone = encode(topics[0], 1, {});
+  ASSERT_TRUE(decodeRepair(repair).ok());
+  const size_t fixed = fixedBytesOf(MessageKind::kRepair);
+  repair.resize(repair.size() - (alone.size() - fixedBytesOf(MessageKind::kTopics)));
+  repair.insert(repair.end(), whole.begin() + static_cast<ptrdiff_t>(fixedBytesOf(MessageKind::kTopics)),
+                whole.end());
+  const size_t n = repair.size() - fixed;
+  for (size_t i = 0; i < 4; ++i) repair[fixed - 1 - i] = static_cast<uint8_t>(n >> 8 * i);
+  writeChecksum(repair, fixed);
+  EXPECT_FALSE(decodeRepair(repair).ok());
 }
 
 // No message makes a receiver hold more cells than the cap, whatever it says.

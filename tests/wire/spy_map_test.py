@@ -17,7 +17,7 @@ sys.path.insert(0, os.path.join(SOURCE, "common", "wire", "python"))
 import shoal_reader  # noqa: E402
 
 GOLDEN = [os.path.join(SOURCE, "tests", "data", "wire", name + ".bin")
-          for name in ("topics", "bricks", "certainties", "repair_brick", "repair_topic")]
+          for name in ("topics", "topics_shared", "bricks", "certainties", "repair_brick", "repair_topic")]
 
 
 def read(path):
@@ -47,10 +47,10 @@ def golden_words():
     lines = []
     for path in GOLDEN:
         m = shoal_reader.decode(read(path))
-        if "words" in m:
-            words = ", ".join(f"{word}={count}" for word, count in m["words"])
-            lines.append(f"golden {m['robot']} {m['epoch']} {m['observation']} {m['part']} {m['num_parts']} "
-                         f"[{m['topic']}] {m['weight']} {m['group_sizes']} {{{words}}}")
+        for t in m.get("topics", []):
+            words = ", ".join(f"{word}={count}" for word, count in t["words"])
+            lines.append(f"golden {m['robot']} {m['epoch']} {t['observation']} {t['part']} {t['num_parts']} "
+                         f"[{t['topic']}] {t['weight']} {t['group_sizes']} {{{words}}}")
     return lines
 
 

@@ -116,10 +116,13 @@ std::vector<Piece> wholePieces(RobotId robot, int32_t observation, Random& rando
 }
 
 std::vector<comms::Packet> packetsOfRobots(Random& random) {
-  std::vector<comms::Packet> packets;
+  std::vector<comms::Packet> packets, together;
   for (int r = 0; r < 3; ++r) {
     for (const int observation : {20, 40}) {
+      std::vector<Piece> shared;  // first parts of topics, said together too
       for (const Piece& whole : wholePieces(RobotId{r}, observation, random)) {
+        if (whole.key.kind == mapping::PieceKind::kTopic && whole.key.index[0] > 6)
+          shared.push_back(cutToFit(whole, kMaxBytes).front());
         for (const Piece& part : cutToFit(whole, kMaxBytes)) {
           packets.push_back(packetOf(part, 1'000'000 * observation));
           const bool is_layer = part.key.kind == mapping::PieceKind::kPicture;
@@ -132,6 +135,8 @@ std::vector<comms::Packet> packetsOfRobots(Random& random) {
           }
         }
       }
+      together.push_back({"SHOAL_" + name(RobotId{r}) + "_TOPICS",
+                          encode(shared, kMission, {1'000'000 * (observation + 5)})});
     }
   }
   // An earlier life of R02, with topics of its own.
@@ -151,6 +156,9 @@ std::vector<comms::Packet> packetsOfRobots(Random& random) {
     stampTime(packets.back().bytes, {70'000'000});
   }
   for (size_t i = packets.size(); i > 1; --i) std::swap(packets[i - 1], packets[random.below(i)]);
+  Random places(9);
+  for (const comms::Packet& packet : together)
+    packets.insert(packets.begin() + static_cast<ptrdiff_t>(places.below(packets.size() / 2)), packet);
   return packets;
 }
 
@@ -161,7 +169,7 @@ std::vector<comms::Packet> rubbish(const comms::Packet& good) {
   packets[1].channel = "SHOAL_R00_HEARTBEAT";
   packets[2].bytes[25] ^= 1;
   packets[3].bytes.pop_back();
-  packets[4].bytes[20] = 1;  // another format
+  packets[4].bytes[20] = 2;  // another format
   packets[5].bytes.assign(5, 0);
   packets[6].channel = "SHOAL_R77" + good.channel.substr(good.channel.rfind('_'));
   return packets;

@@ -24,6 +24,20 @@ class CellField:
             best = cell
         return best
 
+    def lies(self):
+        """How each cell lies: steps to the heights west and south, how many cells of its column are above and below."""
+        lies = [None] * len(self.cells)
+
+        def step(place, z):
+            return 0 if place < 0 else min(max(self.cells[place][2] - z, -2), 2) + 3
+
+        for column in self.columns.values():
+            for below, (z, place) in enumerate(column):
+                west, south = self.near[place][:2]
+                above = len(column) - 1 - below
+                lies[place] = step(west, z), step(south, z), min(above, 2), min(below, 2)
+        return lies
+
     def add(self, x, y, z):
         near = []
         for dx, dy, _ in COLUMNS:

@@ -37,10 +37,10 @@ class _Questions:
             for known in range(4):
                 for rank, (least, step) in enumerate(((12000, 3350), (6000, 3300), (6000, 3000), (6000, 3000))):
                     self.shares[rank, share, known] = [least + share * step, 2]
-        self.inner, self.names, self.rings, self.surprised, self.outers = (Contexts() for _ in range(5))
-        self.mixer = Mixer(6)
+        self.inner, self.names, self.rings, self.surprised, self.forms, self.levels = (Contexts() for _ in range(6))
+        self.mixer = Mixer(7)
 
-    def ask(self, bits, candidates, all_votes, rank, left, near, surprises):
+    def ask(self, bits, candidates, all_votes, rank, left, near, surprises, level, lie):
         asked, votes = candidates[rank]
         share, known = min(15, votes * 16 // left), min(3, all_votes // 30)
         relation = [0 if value < 0 else 2 if value == asked else 1 for value in near]
@@ -48,11 +48,12 @@ class _Questions:
         def of(*places):
             return tuple(relation[place] for place in places)
 
-        nearest, second, ring, outer = of(0, 1, 2, 3), of(4, 5, 6, 18), of(7, 8, 9, 10), of(16, 17)
+        nearest, second, ring = of(0, 1, 2, 3), of(4, 5, 6, 18), of(7, 8, 9, 10)
+        label, stack = min(asked, 31), lie[2:]
         contexts = (self.shares[rank, share, known], self.inner[rank, nearest, second],
-                    self.names[min(asked, 31), nearest, rank], self.rings[rank, ring, nearest],
+                    self.names[label, nearest, rank], self.rings[rank, ring, nearest],
                     self.surprised[rank, share, surprises, min(3, len(candidates))],
-                    self.outers[rank, outer, second, of(0, 1)])
+                    self.forms[label, lie, of(0, 1)], self.levels[label, level, stack, of(18, 0)])
         return self.mixer.bit(bits, contexts, (rank, share // 4))
 
 
@@ -62,13 +63,13 @@ def indices(bits, field, size, ordered):
     questions, result, surprise = _Questions(), [], []
     order, seen, hits = list(range(size)), [0] * size, Models()  # of names
     after, distance, last = [32768, 0], Models(), 0  # of steps
-    for places in field.near:
+    for places, (_, _, z), lie in zip(field.near, field.cells, field.lies()):
         near = [-1 if place < 0 else result[place] for place in places]
         candidates, all_votes = _candidates(near)
         surprises = sum(bit for place, bit in zip(places[:2], (1, 2)) if place >= 0 and surprise[place])
         value, left, rank = None, all_votes, 0
         for rank in range(len(candidates)):
-            if questions.ask(bits, candidates, all_votes, rank, left, near, surprises):
+            if questions.ask(bits, candidates, all_votes, rank, left, near, surprises, z % 64, lie):
                 value = candidates[rank][0]
                 break
             left = max(1, left - candidates[rank][1])

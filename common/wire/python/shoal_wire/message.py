@@ -6,7 +6,7 @@ import struct
 
 from .errors import require
 from .layout import FIELDS, FINGERPRINTS, FORMAT, KINDS, LAYOUT, MASK, MAX_MESSAGE, MAX_ROBOT, MAX_TIME, PIECE_KINDS, UNSIGNED
-from .payloads import READ, brick_headers
+from .payloads import READ, brick_headers, topic_headers
 from .range_coder import Bits
 
 
@@ -49,9 +49,10 @@ def unframe(data):
 def decode(data):
     """A message as a dict: "kind", the fields of its type in lcmtypes/*.lcm, and what its payload holds.
 
-    HEARTBEAT: class_bytes {class: bytes}, roster [(robot, digest)]. TOPICS: created_us, weight, group_sizes,
-    words [(word, count)]. In place of the counts, BRICK: bricks, dicts of part, num_parts, observation, brick_x, y, z
-    and cells [((x, y, z), topic, seen_us)]. CERTAINTY: certain_bricks, with certainties [((x, y, z), steps)]. MAP: fused_cells [((x, y, z), label, robot, seen_us, steps)]. MATCHES:
+    HEARTBEAT: class_bytes {class: bytes}, roster [(robot, digest)]. TOPICS: topics, dicts of part, num_parts,
+    observation, topic, num_words, created_us, weight, group_sizes and words [(word, count)]. BRICK: bricks, dicts of
+    part, num_parts, observation, brick_x, y, z and cells [((x, y, z), topic, seen_us)]. CERTAINTY: certain_bricks, with
+    certainties [((x, y, z), steps)]. MAP: fused_cells [((x, y, z), label, robot, seen_us, steps)]. MATCHES:
     correspondences [(robot, topic, label)]. EDIT: operation, author, counter, made_us, and topics [[robot, epoch,
     topic]], name, robot or undone [author, counter]. PICTURE: cell (x, y, z), seen_us, layer [bytes]. REQUEST: talk in
     hexadecimal. REPAIR: what the piece's own message holds. LABELS: labels [{label, name, cells, robots, first_seen_us}].
@@ -69,10 +70,10 @@ def pieces_of(m):
     """The pieces of state in a decoded message of a kind of pieces but EDIT, as content_hash() takes them."""
     if m["kind"] == "SETTINGS":
         return [{"part": 0, "num_parts": 1, **m}]
-    if m["kind"] in ("TOPICS", "PICTURE"):
+    if m["kind"] == "PICTURE":
         return [m]
-    return [{"kind": m["kind"], "robot": m["robot"], "epoch": m["epoch"], **brick}
-            for brick in m["bricks" if m["kind"] == "BRICK" else "certain_bricks"]]
+    lists = {"TOPICS": "topics", "BRICK": "bricks", "CERTAINTY": "certain_bricks"}
+    return [{"kind": m["kind"], "robot": m["robot"], "epoch": m["epoch"], **one} for one in m[lists[m["kind"]]]]
 
 
 def keys_of(data):
@@ -80,8 +81,10 @@ def keys_of(data):
     m, payload = unframe(data)
     if m["kind"] == "SETTINGS":
         return [((0,), (m["epoch"], 0), 0)]
-    if m["kind"] in ("TOPICS", "PICTURE"):
-        return [((m["topic"], m.get("example", 0)), (m["epoch"], m["observation"]), m["part"])]
+    if m["kind"] == "PICTURE":
+        return [((m["topic"], m["example"]), (m["epoch"], m["observation"]), m["part"])]
+    if m["kind"] == "TOPICS":
+        return [((t["topic"], 0), (m["epoch"], t["observation"]), t["part"]) for t in topic_headers(m, Bits(payload))]
     count = m["bricks" if m["kind"] == "BRICK" else "certain_bricks"]
     require(1 <= count <= 1024, "bricks")
     return [((b["brick_x"], b["brick_y"], b["brick_z"]), (m["epoch"], b["observation"]), b["part"])

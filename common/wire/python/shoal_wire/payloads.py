@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Payloads, one function a type. Each takes the message and adds to it, or puts lists in place of counts."""
+import bisect
 import math
 import re
 
 from . import cells
 from .cell_field import CellField, Geometry
 from .errors import BadMessage, require
-from .layout import (MAX_CELLS, MAX_LABEL, MAX_LAYER, MAX_ROBOT, MAX_TIME, MAX_TOPIC, MAX_VOCABULARY, OPERATIONS,
-                     OPERATORS, PHASES, TRAFFIC_CLASSES)
+from .layout import (MAX_CELLS, MAX_LABEL, MAX_LAYER, MAX_ROBOT, MAX_TIME, MAX_TOPIC, MAX_TOPICS, MAX_VOCABULARY,
+                     MAX_WORDS, OPERATIONS, OPERATORS, PHASES, TRAFFIC_CLASSES)
 from .range_coder import Bits, Models
 
 
@@ -57,41 +58,73 @@ def _read_heartbeat(m, payload):
     m["phase"] = PHASES[m["phase"]]
 
 
-def _read_topics(m, payload):
+def topic_headers(m, bits):
+    """Which topics a message holds, of what versions and with how many words, as dicts; the first is in its fields."""
+    def zigzag(coded):
+        return -(coded + 1) // 2 if coded & 1 else coded // 2
+
+    names = ("part", "num_parts", "observation", "topic", "num_words")
+    headers = [{name: m[name] for name in names}]
+    more, gaps, versions, lengths, is_part = Models(), Models(), Models(), Models(), [64000, 10]
     require(0 <= m["topic"] <= MAX_TOPIC, "topic")
-    require(0 <= m["num_words"] <= 65536, "num_words")
+    require(0 <= m["num_words"] <= MAX_WORDS, "num_words")
+    count = bits.small(more)
+    require(count < MAX_TOPICS, "topics", "bad payload")
+    for _ in range(count):
+        before = headers[-1]
+        topic = before["topic"] + 1 + bits.small(gaps)
+        observation = before["observation"] + zigzag(bits.small(versions))
+        parts, part = (bits.direct(8), bits.direct(8)) if bits.bit(is_part) else (None, 0)
+        require(parts is None or parts >= 2, "parts", "bad payload")
+        require(topic <= MAX_TOPIC and 0 <= observation < 2**31, "topic or version", "bad payload")
+        require(part < (parts or 1), "part")
+        headers.append(dict(zip(names, (part, parts or 1, observation, topic, bits.long(lengths)))))
+    require(sum(header["num_words"] for header in headers) <= MAX_WORDS, "num_words", "bad payload")
+    return headers
+
+
+def _read_topics(m, payload):
     bits = Bits(payload)
-    m["created_us"], m["weight"] = bits.wide(), bits.wide()
+    topics = topic_headers(m, bits)
+    for name in ("part", "num_parts", "observation", "topic", "num_words"):
+        del m[name]
     sizes, ends = [], []
     for _ in range(bits.direct(6) + 1):
         sizes.append(bits.wide())
         ends.append(sum(sizes))
         require(sizes[-1] > 0 and ends[-1] <= MAX_VOCABULARY, "sizes of word groups", "bad payload")
-    require(m["num_words"] <= ends[-1], "more words than the vocabulary has", "bad payload")
-    unit = bits.wide()
-    require(1 <= unit < 2**31, "unit of the counts", "bad payload")
+    period = bits.wide()
+    require(1 <= period <= MAX_TIME, "period of the times", "bad payload")
+    created_models, weight_models, unit_models = Models(), Models(), Models()
     gaps = [Models() for _ in range(4)]
     counts = [[Models() for _ in range(4)] for _ in range(4)]
-    words, follows, last, group = [], 0, 0, 0
 
     def group_of(word):
-        nonlocal group
         require(word < ends[-1], "a word outside the vocabulary", "bad payload")
-        while word >= ends[group]:
-            group += 1
-        return min(group, 3)
+        return min(bisect.bisect_right(ends, word), 3)
 
-    for _ in range(m["num_words"]):
-        word = follows + bits.small(gaps[group_of(follows)])
-        count = bits.small(counts[group_of(word)][last])
-        require(count < (2**31 - 1) // unit, "a count", "bad payload")
-        words.append((word, (count + 1) * unit))
-        follows, last = word + 1, min(count.bit_length(), 3)
+    for topic in topics:
+        topic["created_us"] = period * bits.long(created_models)
+        topic["weight"], unit = bits.long(weight_models), bits.long(unit_models)
+        require(topic["created_us"] <= MAX_TIME, "created", "bad payload")
+        require(topic["num_words"] <= ends[-1], "more words than the vocabulary has", "bad payload")
+        require(1 <= unit < 2**31, "unit of the counts", "bad payload")
+        words, follows, last = [], 0, 0
+        for _ in range(topic["num_words"]):
+            word = follows + bits.small(gaps[group_of(follows)])
+            count = bits.small(counts[group_of(word)][last])
+            require(count < (2**31 - 1) // unit, "a count", "bad payload")
+            words.append((word, (count + 1) * unit))
+            follows, last = word + 1, min(count.bit_length(), 3)
+        require(unit == (math.gcd(*(count for _, count in words)) or 1), "unit of the counts", "bad payload")
+        topic["group_sizes"], topic["words"] = sizes, words
     bits.end()
-    require(m["created_us"] <= MAX_TIME and m["weight"] <= MAX_TIME, "created or weight")
-    require(m["weight"] or not words, "a retired topic has no words")
-    require(unit == (math.gcd(*(count for _, count in words)) or 1), "unit of the counts", "bad payload")
-    m["group_sizes"], m["words"] = sizes, words
+    divisor = math.gcd(*(topic["created_us"] for topic in topics)) or 1
+    require(period == divisor, "period of the times", "not canonical")
+    for topic in topics:
+        require(topic["weight"] <= MAX_TIME, "weight")
+        require(topic["weight"] or not topic["words"], "a retired topic has no words")
+    m["topics"] = topics
 
 
 def brick_headers(bits, count):

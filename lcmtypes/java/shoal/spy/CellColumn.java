@@ -14,8 +14,8 @@ final class CellColumn {
   private final int[][] shares = new int[4 * 16 * 4][];
   private final BitMixer.Contexts inner = new BitMixer.Contexts(), names = new BitMixer.Contexts(),
                                   rings = new BitMixer.Contexts(), surprised = new BitMixer.Contexts(),
-                                  outers = new BitMixer.Contexts();
-  private final BitMixer mixer = new BitMixer(6);
+                                  forms = new BitMixer.Contexts(), levels = new BitMixer.Contexts();
+  private final BitMixer mixer = new BitMixer(7);
 
   private CellColumn(BitReader bits) {
     this.bits = bits;
@@ -55,19 +55,21 @@ final class CellColumn {
   }
 
   /** Is it the candidate of this rank? */
-  private boolean ask(List<int[]> candidates, int allVotes, int rank, int left, int[] near, int surprises) throws BadMessage {
+  private boolean ask(List<int[]> candidates, int allVotes, int rank, int left, int[] near, int surprises, int level,
+                      int[] lie) throws BadMessage {
     int asked = candidates.get(rank)[0], votes = candidates.get(rank)[1];
     int share = Math.min(15, votes * 16 / left), known = Math.min(3, allVotes / 30);
     int[] relation = new int[near.length];
     for (int i = 0; i < near.length; ++i) relation[i] = near[i] < 0 ? 0 : near[i] == asked ? 2 : 1;
     int nearest = base3(relation, 0, 1, 2, 3), second = base3(relation, 4, 5, 6, 18);
-    int ring = base3(relation, 7, 8, 9, 10), outer = base3(relation, 16, 17);
+    int ring = base3(relation, 7, 8, 9, 10), label = Math.min(asked, 31), stack = lie[2] * 3 + lie[3];
     int[][] contexts = {shares[(rank * 16 + share) * 4 + known],
                         inner.get((rank * 81 + nearest) * 81 + second),
-                        names.get((Math.min(asked, 31) * 81 + nearest) * 4 + rank),
+                        names.get((label * 81 + nearest) * 4 + rank),
                         rings.get((rank * 81 + ring) * 81 + nearest),
                         surprised.get(((rank * 16 + share) * 4 + surprises) * 4 + Math.min(3, candidates.size())),
-                        outers.get(((rank * 9 + outer) * 81 + second) * 9 + base3(relation, 0, 1))};
+                        forms.get((((label * 6 + lie[0]) * 6 + lie[1]) * 9 + stack) * 9 + base3(relation, 0, 1)),
+                        levels.get(((label * 64 + level) * 9 + stack) * 9 + base3(relation, 18, 0))};
     return mixer.bit(bits, contexts, rank * 4 + share / 4) == 1;
   }
 
@@ -93,6 +95,7 @@ final class CellColumn {
     BitReader.Models hits = new BitReader.Models(), distance = new BitReader.Models();
     int[] after = {32768, 0};
     long last = 0;
+    int[][] lies = field.lies();
     for (int cell = 0; cell < result.length; ++cell) {
       int[] places = field.near.get(cell), near = new int[places.length];
       for (int i = 0; i < near.length; ++i) near[i] = places[i] < 0 ? -1 : result[places[i]];
@@ -108,7 +111,7 @@ final class CellColumn {
       int left = allVotes, asked = 0;
       for (int rank = 0; rank < candidates.size() && !known; ++rank) {
         asked = rank;
-        known = ask(candidates, allVotes, rank, left, near, surprises);
+        known = ask(candidates, allVotes, rank, left, near, surprises, field.cells.get(cell)[2] & 63, lies[cell]);
         if (known) value = candidates.get(rank)[0];
         left = Math.max(1, left - candidates.get(rank)[1]);
       }

@@ -45,6 +45,26 @@ final class CellField {
     return best;
   }
 
+  /**
+   * How each cell lies: steps to the heights west and south, from 0 to 5, then how many cells of its column are above and
+   * below, at most 2 of each.
+   */
+  int[][] lies() {
+    int[][] lies = new int[cells.size()][];
+    for (List<int[]> column : columns.values()) {
+      for (int below = 0; below < column.size(); ++below) {
+        int place = column.get(below)[1], above = column.size() - 1 - below;
+        int[] around = near.get(place);
+        lies[place] = new int[] {lie(around[0], place), lie(around[1], place), Math.min(above, 2), Math.min(below, 2)};
+      }
+    }
+    return lies;
+  }
+
+  private int lie(int other, int place) {
+    return other < 0 ? 0 : Math.min(Math.max(cells.get(other)[2] - cells.get(place)[2], -2), 2) + 3;
+  }
+
   private boolean has(int x, int y, int z) {
     int[] found = nearest(x, y, z);
     return found != null && found[0] == z;

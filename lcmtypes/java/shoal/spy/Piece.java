@@ -27,7 +27,8 @@ public final class Piece {
   public int[] groups = {};                        // TOPIC: words in each word group
   public TreeMap<Integer, Integer> words = new TreeMap<>();  // TOPIC: word -> count
 
-  private static final int MAX_MESSAGE = 1391, MAX_CELLS = 32768, MAX_TOPIC = 9999, STEPS = 63, FRONT = 21, SEAL = 16;
+  private static final int MAX_MESSAGE = 1391, MAX_CELLS = 32768, MAX_TOPIC = 9999, MAX_WORDS = 65536,
+                           MAX_TOPICS = 256, STEPS = 63, FRONT = 21, SEAL = 16;
   private static final long MAX_TIME = (1L << 62) - 1;
 
   /** Whether messages of this fingerprint hold what this reads. */
@@ -54,7 +55,7 @@ public final class Piece {
     int n = in.getInt(head - 4);
     require(n == message.length - head || n == message.length - head - SEAL, "n");
     require(n >= 0 && head + n <= MAX_MESSAGE, "n");
-    require(in.getLong(8) >= 0 && message[20] == 2, "time or format");
+    require(in.getLong(8) >= 0 && message[20] == 3, "time or format");
     require(checksum(message, head, n) == (in.getShort(head - 6) & 0xFFFF), "checksum");
     byte[] payload = Arrays.copyOfRange(message, head, head + n);
     if (!again) return contents(fingerprint, ByteBuffer.wrap(message, FRONT, fields), payload);
@@ -81,7 +82,7 @@ public final class Piece {
   private static List<Piece> contents(long fingerprint, ByteBuffer in, byte[] payload) throws BadMessage {
     List<Piece> pieces = new ArrayList<>();
     if (fingerprint == topics_t.LCM_FINGERPRINT) {
-      pieces.add(topic(in, new BitReader(payload)));
+      pieces.addAll(topics(in, new BitReader(payload)));
     } else {
       Kind kind = fingerprint == bricks_t.LCM_FINGERPRINT ? Kind.LABELS : Kind.CERTAINTIES;
       pieces.addAll(bricks(kind, in.getShort(), in.getInt(), in.getShort(), new BitReader(payload)));
@@ -92,36 +93,86 @@ public final class Piece {
     return pieces;
   }
 
-  private static Piece topic(ByteBuffer in, BitReader bits) throws BadMessage {
-    Piece piece = new Piece();
-    piece.kind = Kind.TOPIC;
-    piece.part = in.get() & 255;
-    piece.numParts = in.get() & 255;
-    piece.robot = in.getShort();
-    piece.epoch = in.getInt();
-    piece.observation = in.getInt();
-    int topic = in.getShort(), numWords = in.getInt();
-    require(0 <= topic && topic <= MAX_TOPIC && 0 <= numWords && numWords <= 65536, "topic or num_words");
-    piece.index.add(topic);
-    bits.wide();  // when it was created
-    piece.weight = bits.wide();
-    piece.groups = new int[(int) bits.direct(6) + 1];
-    long[] ends = new long[piece.groups.length];
+  private static List<Piece> topics(ByteBuffer in, BitReader bits) throws BadMessage {
+    Piece first = new Piece();
+    first.kind = Kind.TOPIC;
+    first.part = in.get() & 255;
+    first.numParts = in.get() & 255;
+    first.robot = in.getShort();
+    first.epoch = in.getInt();
+    first.observation = in.getInt();
+    int topic = in.getShort();
+    long numWords = in.getInt();
+    require(0 <= topic && topic <= MAX_TOPIC && 0 <= numWords, "topic or num_words");
+    first.index.add(topic);
+    List<Piece> pieces = new ArrayList<>(Arrays.asList(first));
+    List<Long> lengths = new ArrayList<>(Arrays.asList(numWords));
+    moreTopics(bits, pieces, lengths);
+    int[] groups = new int[(int) bits.direct(6) + 1];
+    long[] ends = new long[groups.length];
     for (int g = 0; g < ends.length; ++g) {
       long size = bits.wide();
       ends[g] = size + (g == 0 ? 0 : ends[g - 1]);
       require(0 < size && size <= 1 << 20 && ends[g] <= 1 << 20, "sizes of word groups");
-      piece.groups[g] = (int) size;
+      groups[g] = (int) size;
     }
-    long unit = bits.wide();
-    require(numWords <= ends[ends.length - 1] && 1 <= unit && unit < 1L << 31, "words or unit");
-    require(piece.weight > 0 || numWords == 0, "a retired topic has no words");
+    long period = bits.wide();
+    require(1 <= period && period <= MAX_TIME, "period of the times");
+    BitReader.Models created = new BitReader.Models(), weights = new BitReader.Models(), units = new BitReader.Models();
     BitReader.Models[] gaps = new BitReader.Models[4], counts = new BitReader.Models[16];
     for (int i = 0; i < 4; ++i) gaps[i] = new BitReader.Models();
     for (int i = 0; i < 16; ++i) counts[i] = new BitReader.Models();
+    for (int i = 0; i < pieces.size(); ++i) {
+      Piece piece = pieces.get(i);
+      long words = lengths.get(i);
+      require(bits.wideOf(created) <= MAX_TIME / period, "when a topic was created");
+      piece.weight = bits.wideOf(weights);
+      piece.groups = groups;
+      long unit = bits.wideOf(units);
+      require(words <= ends[ends.length - 1] && 1 <= unit && unit < 1L << 31, "words or unit");
+      require(piece.weight > 0 || words == 0, "a retired topic has no words");
+      readWords(bits, piece, words, unit, ends, gaps, counts);
+    }
+    bits.end();
+    return pieces;
+  }
+
+  /** The topics after the first: which, of what versions, with how many words. */
+  private static void moreTopics(BitReader bits, List<Piece> pieces, List<Long> lengths) throws BadMessage {
+    BitReader.Models ids = new BitReader.Models(), versions = new BitReader.Models(), words = new BitReader.Models();
+    int[] isPart = {64000, 10};
+    long more = bits.small(new BitReader.Models()), all = lengths.get(0);
+    require(more < MAX_TOPICS, "topics");
+    for (long i = 0; i < more; ++i) {
+      Piece before = pieces.get(pieces.size() - 1), piece = new Piece();
+      long topic = before.index.get(0) + 1 + bits.small(ids);
+      long observation = before.observation + zigzag(bits.small(versions));
+      require(topic <= MAX_TOPIC && 0 <= observation && observation <= Integer.MAX_VALUE, "topic or version");
+      piece.kind = Kind.TOPIC;
+      piece.robot = before.robot;
+      piece.epoch = before.epoch;
+      piece.observation = (int) observation;
+      piece.index.add((int) topic);
+      piece.numParts = 1;
+      if (bits.bit(isPart) == 1) {
+        piece.numParts = (int) bits.direct(8);
+        piece.part = (int) bits.direct(8);
+        require(piece.numParts >= 2, "parts");
+      }
+      long length = bits.wideOf(words);
+      require(length <= MAX_WORDS, "words");
+      pieces.add(piece);
+      lengths.add(length);
+      all += length;
+    }
+    require(all <= MAX_WORDS, "words");
+  }
+
+  private static void readWords(BitReader bits, Piece piece, long numWords, long unit, long[] ends, BitReader.Models[] gaps,
+                                BitReader.Models[] counts) throws BadMessage {
     long follows = 0;
     int last = 0;
-    for (int i = 0; i < numWords; ++i) {
+    for (long i = 0; i < numWords; ++i) {
       long word = follows + bits.small(gaps[group(ends, follows)]);
       long count = bits.small(counts[4 * group(ends, word) + last]);
       require(count < Integer.MAX_VALUE / unit, "a count");
@@ -129,8 +180,6 @@ public final class Piece {
       follows = word + 1;
       last = Math.min(64 - Long.numberOfLeadingZeros(count), 3);
     }
-    bits.end();
-    return piece;
   }
 
   private static int group(long[] ends, long word) throws BadMessage {
