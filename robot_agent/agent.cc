@@ -269,7 +269,7 @@ void Agent::say(const mapping::Piece& part, wire::Bytes message) {
   offer(part, std::move(message));
 }
 
-// Bricks that wait share datagrams.
+// Topics and bricks that wait share datagrams.
 std::optional<comms::Packet> Agent::join(std::span<const comms::SendQueue::Next> together) const {
   std::vector<const mapping::Piece*> pieces;
   for (const comms::SendQueue::Next& each : together) {

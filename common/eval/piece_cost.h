@@ -14,7 +14,7 @@ struct PieceCost {
   PieceCost& operator+=(const PieceCost& other);
 };
 
-/// A piece by itself: not joined with others in a datagram, as robots join bricks.
+/// A piece by itself: not joined with others in a datagram, as robots join topics and bricks.
 PieceCost costOf(const mapping::Piece& whole);
 
 }  // namespace shoal::eval
