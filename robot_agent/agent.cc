@@ -12,6 +12,7 @@
 #include "fusion_node/picture_files.h"
 #include "fusion_node/process.h"
 #include "shoal/comms/channels.h"
+#include "shoal/cpu_time.h"
 #include "shoal/mapping/atomic_file.h"
 #include "shoal/mapping/belief_files.h"
 #include "shoal/mapping/held_pictures.h"
@@ -210,20 +211,29 @@ void Agent::awaitObservation() {
 void Agent::takeIn(const world::Observation& observation) {
   const auto start = std::chrono::steady_clock::now();
   explorer_.observe(observation);
+  const double learnt_ms = threadCpuMs();
   belief_ = explorer_.outline();
   path_.push_back({observation.time, observation.world_from_camera});
+  ImageTimes times{.stages = explorer_.lastTimes(), .num_cells = explorer_.numCells()};
+  times.stages.belief_ms += threadCpuMs() - learnt_ms;
+  const double believed_ms = threadCpuMs();
   if (path_.size() % kPublishEvery == 0) {
     publish();
     sharpenWanted();
   }
+  const double published_ms = threadCpuMs();
+  times.publish_ms = published_ms - believed_ms;
   if (path_.size() % (options_.live ? kPublishEvery : kSaveEvery) == 0) save();
-  const robot::StageTimes& t = explorer_.lastTimes();
+  times.save_ms = threadCpuMs() - published_ms;
   const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
   total_ms_ += took.count();
+  const robot::StageTimes& t = times.stages;
   spdlog::debug(
-      "observation {}: words {:.1f} ms, topics {:.1f} ms, belief {:.1f} ms, pictures {:.1f} ms, publish "
-      "{:.1f} ms",
-      observation.number, t.words_ms, t.topics_ms, t.belief_ms, t.pictures_ms, took.count() - t.total());
+      "observation {}: {:.1f} ms; of CPU words {:.1f} ms, topics {:.1f} ms, belief {:.1f} ms, pictures {:.1f} "
+      "ms, publish {:.1f} ms, save {:.1f} ms",
+      observation.number, took.count(), t.words_ms, t.topics_ms, t.belief_ms, t.pictures_ms, times.publish_ms,
+      times.save_ms);
+  if (options_.watch) options_.watch(times);
 }
 
 // Offers what is found to have changed since the last time.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -25,6 +26,14 @@
 
 namespace shoal::robot_agent {
 
+/// Milliseconds of CPU that an image took beside what the explorer did with it.
+struct ImageTimes {
+  robot::StageTimes stages;
+  double publish_ms = 0;  ///< to find out what has changed and to encode it
+  double save_ms = 0;     ///< to begin a checkpoint
+  int32_t num_cells = 0;  ///< of the map by then
+};
+
 struct AgentOptions {
   robot::ExplorerOptions explorer;
   int32_t mission = 1;
@@ -38,6 +47,7 @@ struct AgentOptions {
   std::string checkpoint_dir;        ///< where checkpoints go; empty = nowhere
   std::optional<Checkpoint> resume;  ///< what to go on from, of this mission, robot and epoch
   bool live = false;                 ///< what the source has shown it will not show again
+  std::function<void(const ImageTimes&)> watch;  ///< told after each image, to measure; may be empty
 };
 
 /// One robot: flies its source, learns, tells the others under its budget, and listens.

@@ -69,6 +69,7 @@ void SendQueue::offer(TrafficClass traffic, std::string_view key, Packet packet)
   if (entry.packet.channel == packet.channel && entry.packet.bytes == packet.bytes) return;
   if (entry.waiting) {
     of(traffic).waiting_bytes += cost(packet) - cost(entry.packet);
+    ++of(traffic).changes;
     entry.packet = std::move(packet);
     ++revision_;
     return;
@@ -187,6 +188,7 @@ void SendQueue::await(Entries::iterator it) {
   entry.place = next_place_++;
   joined.waiting.emplace(entry.place, it);
   joined.waiting_bytes += cost(entry.packet);
+  ++joined.changes;
 }
 
 void SendQueue::leave(Entries::iterator it) {
@@ -198,6 +200,7 @@ void SendQueue::leave(Entries::iterator it) {
   Class& left = of(entry.traffic);
   left.waiting.erase(entry.place);
   left.waiting_bytes -= cost(entry.packet);
+  ++left.changes;
 }
 
 }  // namespace shoal::comms

@@ -94,6 +94,8 @@ class SendQueue {
   /// On the wire, if every packet went alone.
   int64_t waitingBytes(TrafficClass traffic) const { return of(traffic).waiting_bytes; }
   int64_t waitingBytes() const;  ///< Of all classes.
+  /// Grows whenever something of the class begins to wait, waits no longer or waits with other content.
+  uint64_t changes(TrafficClass traffic) const { return of(traffic).changes; }
 
  private:
   struct Entry {
@@ -110,6 +112,7 @@ class SendQueue {
     int64_t weight = 0;  // 0: not for this queue
     int64_t pass = 0;    // stride scheduling: the class of lowest pass goes next
     int64_t waiting_bytes = 0;
+    uint64_t changes = 0;
     Line waiting;
   };
 

@@ -14,6 +14,7 @@ namespace {
 
 constexpr size_t kMostJoined = 256;
 constexpr int kTriesToJoin = 6;
+constexpr double kStale = 0.125;      // part of what waits
 constexpr size_t kBacklogTrials = 4;  // datagrams that are made to know what the others will take
 
 }  // namespace
@@ -92,17 +93,41 @@ Sender::Made Sender::pack(std::span<const SendQueue::Next> next, size_t guess) c
 
 int64_t Sender::backlog() const {
   if (!options_.join) return queue_.waitingBytes();
-  if (backlog_ && backlog_->first == queue_.revision()) return backlog_->second;
-  int64_t bytes = 0;
+  std::optional<TrafficClass> stalest;
+  double most_stale = kStale;
   for (size_t c = 0; c < kNumTrafficClasses; ++c) {
     const auto traffic = static_cast<TrafficClass>(c);
-    std::map<std::string_view, std::vector<SendQueue::Next>> by_channel;
-    for (const SendQueue::Next& next : queue_.waiting(traffic))
-      by_channel[next.packet->channel].push_back(next);
-    for (const auto& [channel, waiting] : by_channel) bytes += backlogOf(waiting, joined_[c]);
+    const size_t waiting = queue_.numWaiting(traffic);
+    if (waiting == 0) {
+      trials_[c] = {};
+      continue;
+    }
+    if (trials_[c].alone == 0) tryOut(traffic);
+    const auto changes = static_cast<double>(queue_.changes(traffic) - trials_[c].changes);
+    if (changes > most_stale * static_cast<double>(waiting)) {
+      most_stale = changes / static_cast<double>(waiting);
+      stalest = traffic;
+    }
   }
-  backlog_ = {queue_.revision(), bytes};
+  if (stalest) tryOut(*stalest);
+  int64_t bytes = 0;
+  for (size_t c = 0; c < kNumTrafficClasses; ++c) {
+    const Trial& trial = trials_[c];
+    if (trial.alone == 0) continue;
+    const int64_t alone = queue_.waitingBytes(static_cast<TrafficClass>(c));
+    bytes += std::max<int64_t>(1, (alone * trial.taken + trial.alone / 2) / trial.alone);
+  }
   return bytes;
+}
+
+void Sender::tryOut(TrafficClass traffic) const {
+  const auto c = static_cast<size_t>(traffic);
+  Trial trial{queue_.changes(traffic), queue_.waitingBytes(traffic), 0};
+  std::map<std::string_view, std::vector<SendQueue::Next>> by_channel;
+  for (const SendQueue::Next& next : queue_.waiting(traffic))
+    by_channel[next.packet->channel].push_back(next);
+  for (const auto& [channel, waiting] : by_channel) trial.taken += backlogOf(waiting, joined_[c]);
+  trials_[c] = trial;
 }
 
 // Of one class and channel.

@@ -8,7 +8,6 @@
 #include <optional>
 #include <span>
 #include <string_view>
-#include <utility>
 
 #include "shoal/comms/budget.h"
 #include "shoal/comms/bus.h"
@@ -73,8 +72,9 @@ class Sender {
 
   /// Bytes on the wire that it will take to say all that waits, with pieces sharing datagrams as they will:
   /// exact while a class takes few datagrams, else from a few that are made of what waits for a trial, evenly
-  /// spread. 0 only when nothing waits.
-  /// Cost: some datagrams made per class with something waiting, once per change of the queue.
+  /// spread. A class is tried again when an eighth of what waits in it is other than it was, but one a call;
+  /// until then as much is taken to share a datagram as at the last trial. 0 only when nothing waits.
+  /// Cost: some datagrams made of one class, at the first call of each.
   int64_t backlog() const;
 
   /// For the caller to count what it refused from others.
@@ -93,7 +93,15 @@ class Sender {
     bool resent = false;
   };
 
+  // How much smaller a class is in datagrams than alone.
+  struct Trial {
+    uint64_t changes = 0;  // of the class, by then
+    int64_t alone = 0;     // bytes; 0: not tried
+    int64_t taken = 0;
+  };
+
   const Made* make(int64_t now_us);
+  void tryOut(TrafficClass traffic) const;
   Made pack(std::span<const SendQueue::Next> next, size_t guess) const;
   int64_t backlogOf(std::span<const SendQueue::Next> waiting, size_t guess) const;
   int64_t earliest(int64_t now_us, const Packet& packet) const;
@@ -107,7 +115,7 @@ class Sender {
   HeartbeatPacer heartbeat_;
   std::optional<Made> made_;
   std::array<size_t, kNumTrafficClasses> joined_{};  // how many shared the last datagram of a class
-  mutable std::optional<std::pair<uint64_t, int64_t>> backlog_;  // the queue's revision, and how much waited
+  mutable std::array<Trial, kNumTrafficClasses> trials_{};
   bool heartbeat_went_last_ = false;
   WallPacer pacer_;
   Stats stats_;

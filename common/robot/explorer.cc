@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <bit>
-#include <chrono>
 #include <stdexcept>
 
+#include "shoal/cpu_time.h"
 #include "shoal/demand.h"
 #include "shoal/random.h"
 #include "shoal/robot/profile.h"
@@ -16,15 +16,13 @@ namespace {
 class Stopwatch {
  public:
   double lapMs() {
-    const auto now = Clock::now();
-    const double ms = std::chrono::duration<double, std::milli>(now - start_).count();
-    start_ = now;
+    const double now_ms = threadCpuMs(), ms = now_ms - start_ms_;
+    start_ms_ = now_ms;
     return ms;
   }
 
  private:
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point start_ = Clock::now();
+  double start_ms_ = threadCpuMs();
 };
 
 mapping::BelievedCell believed(const topics::CellLabel& c) {

@@ -36,7 +36,7 @@ struct ExplorerOptions {
   mapping::Detail detail = mapping::Detail::kFine;  ///< of what it tells; changes nothing that it learns
 };
 
-/// Milliseconds that the last observation took, by stage.
+/// Milliseconds of CPU that the last observation took, by stage.
 struct StageTimes {
   double words_ms = 0, topics_ms = 0, belief_ms = 0, pictures_ms = 0;
   double total() const { return words_ms + topics_ms + belief_ms + pictures_ms; }

@@ -20,10 +20,12 @@ int32_t step(int32_t coordinate, int32_t direction) {
 }  // namespace
 
 int32_t Neighborhood::insert(const world::CellIndex& cell) {
-  const auto [entry, is_new] = number_of_.try_emplace(cell, size());
-  const int32_t number = entry->second;
-  if (!is_new) return number;
-  links_.emplace_back();
+  Cube& cube = cubes_[cubeOf(cell)];
+  const auto at = std::ranges::lower_bound(cube, placeOf(cell), {}, &Numbered::place);
+  if (at != cube.end() && at->place == placeOf(cell)) return at->number;
+  const int32_t number = size();
+  cube.insert(at, {placeOf(cell), number});
+  links_.push_back({});
   for (const int32_t other : around(cell)) {
     if (other == number) continue;
     link(number, other);
@@ -33,16 +35,17 @@ int32_t Neighborhood::insert(const world::CellIndex& cell) {
 }
 
 std::optional<int32_t> Neighborhood::find(const world::CellIndex& cell) const {
-  const auto found = number_of_.find(cell);
-  if (found == number_of_.end()) return std::nullopt;
-  return found->second;
+  const auto cube = cubes_.find(cubeOf(cell));
+  if (cube == cubes_.end()) return std::nullopt;
+  const auto at = std::ranges::lower_bound(cube->second, placeOf(cell), {}, &Numbered::place);
+  if (at == cube->second.end() || at->place != placeOf(cell)) return std::nullopt;
+  return at->number;
 }
 
 std::vector<int32_t> Neighborhood::around(const world::CellIndex& cell) const {
   std::vector<int32_t> known;
   const auto add = [&](const world::CellIndex& other) {
-    const auto found = number_of_.find(other);
-    if (found != number_of_.end()) known.push_back(found->second);
+    if (const auto number = find(other)) known.push_back(*number);
   };
   add(cell);
   for (const int32_t direction : {-1, 1}) {

@@ -8,6 +8,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "shoal/topics/steady_vector.h"
 #include "shoal/world/ids.h"
 
 namespace shoal::topics {
@@ -42,11 +43,21 @@ class Neighborhood {
     std::array<int32_t, 6> cells;
     int32_t count = 0;
   };
+  // 16 x 16 x 16 cells: the table of these stays small, so that it never takes long to grow.
+  struct Numbered {
+    uint16_t place = 0;  // in the cube
+    int32_t number = 0;
+  };
+  using Cube = std::vector<Numbered>;  // ascending by place
 
+  static world::CellIndex cubeOf(const world::CellIndex& c) { return {c.x >> 4, c.y >> 4, c.z >> 4}; }
+  static uint16_t placeOf(const world::CellIndex& c) {
+    return static_cast<uint16_t>((c.x & 15) << 8 | (c.y & 15) << 4 | (c.z & 15));
+  }
   void link(int32_t a, int32_t b);
 
-  std::unordered_map<world::CellIndex, int32_t, world::CellHash> number_of_;  // looked up, never iterated
-  std::vector<Links> links_;
+  std::unordered_map<world::CellIndex, Cube, world::CellHash> cubes_;  // looked up, never iterated
+  SteadyVector<Links> links_;
 };
 
 }  // namespace shoal::topics
