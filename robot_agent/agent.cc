@@ -53,16 +53,18 @@ comms::TrafficClass trafficOf(mapping::PieceKind kind) {
 constexpr size_t kPieceOverheadBytes = 110;
 constexpr size_t kSmallDatagramBytes = 400;
 
-// Topics change with every image and are dear to encode and to send: what changed is told every so many
-// images, and at the end. A count, so that what is said does not depend on how fast the robot flew.
-constexpr size_t kPublishEvery = 5;
+// Topics change with every image, bricks with every image that shows them, and both are dear to encode and to
+// send: each is told in one of so many images, and at the end. Counts, so that what is said does not depend
+// on how fast the robot flew, and in turns, so that no image takes long.
+constexpr size_t kTurns = 5;
 
-// Bricks of labels or certainties told at a time in flight, so that it takes no longer on large maps: all of
-// what a robot of a team usually holds. What has changed without being seen waits its turn, and for the end.
-constexpr size_t kMostBricks = 128;
+// Bricks of labels or certainties told with an image in flight, so that it takes no longer on large maps: in
+// all turns all of what a robot of a team usually holds. What has changed without being seen waits, at last
+// for the end.
+constexpr size_t kMostBricks = 128 / kTurns;
 
 // Cells looked at for what has changed, beside those of the bricks seen: the same, and all of a usual map.
-constexpr size_t kMostCells = 16384;
+constexpr size_t kMostCells = 16384 / kTurns;
 
 // A multiple of that. What was flown since the last checkpoint is flown again after a crash, with the same
 // result; a live source cannot be, so then every word that is said stands in a checkpoint first.
@@ -157,6 +159,7 @@ void Agent::run() {
   fly();
   write();
   if (!stopRequested()) linger();
+  while (isHolding() || saving_.isRunning()) lookAtSave(true);
   if (options_.fuse) write();  // with the map as it ended
   phase_ = wire::Phase::kLeaving;
   sender_.pump(clock_.now());
@@ -165,7 +168,10 @@ void Agent::run() {
 }
 
 void Agent::fly() {
-  if (!options_.resume) save();
+  if (!options_.resume) {  // nothing is said before
+    save();
+    lookAtSave(true);
+  }
   int32_t skipped = 0;
   while (!stopRequested()) {
     awaitObservation();
@@ -190,6 +196,7 @@ void Agent::fly() {
     passTimeUntil(clock_.now());
   }
   publishAll();
+  while (saving_.isRunning()) lookAtSave(true);
   save();
   if (stopRequested()) return;
   phase_ = wire::Phase::kLanded;
@@ -202,6 +209,7 @@ void Agent::fly() {
 void Agent::awaitObservation() {
   while (!stopRequested() && !source_.ready()) {
     const int64_t now = clock_.now();
+    lookAtSave(false);
     repair_.pump(now);
     sender_.pump(now);
     listen(kAwaitMs);
@@ -217,13 +225,14 @@ void Agent::takeIn(const world::Observation& observation) {
   ImageTimes times{.stages = explorer_.lastTimes(), .num_cells = explorer_.numCells()};
   times.stages.belief_ms += threadCpuMs() - learnt_ms;
   const double believed_ms = threadCpuMs();
-  if (path_.size() % kPublishEvery == 0) {
-    publish();
+  publish();
+  if (path_.size() % kTurns == 0) {
+    publishPictures();
     sharpenWanted();
   }
   const double published_ms = threadCpuMs();
   times.publish_ms = published_ms - believed_ms;
-  if (path_.size() % (options_.live ? kPublishEvery : kSaveEvery) == 0) save();
+  if (path_.size() % (options_.live ? kTurns : kSaveEvery) == 0) save();
   times.save_ms = threadCpuMs() - published_ms;
   const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
   total_ms_ += took.count();
@@ -236,9 +245,10 @@ void Agent::takeIn(const world::Observation& observation) {
   if (options_.watch) options_.watch(times);
 }
 
-// Offers what is found to have changed since the last time.
+// Offers what is found to have changed and has its turn.
 void Agent::publish() {
-  publish(changes_.update(belief_, explorer_, explorer_.takeSeenBricks(), kMostBricks, kMostCells));
+  const mapping::BeliefChanges::Turn turn{static_cast<int32_t>(path_.size() % kTurns), int32_t{kTurns}};
+  publish(changes_.update(belief_, explorer_, explorer_.takeSeenBricks(), kMostBricks, kMostCells, turn));
 }
 
 // Offers all that has changed. Takes longer the larger the map is.
@@ -247,6 +257,7 @@ void Agent::publishAll() {
   belief_ = explorer_.belief();
   explorer_.takeSeenBricks();
   publish(changes_.update(belief_));
+  publishPictures();
 }
 
 void Agent::publish(const std::vector<mapping::Piece>& changed) {
@@ -254,21 +265,26 @@ void Agent::publish(const std::vector<mapping::Piece>& changed) {
     const std::string channel = comms::channelName(name_, wire::channelKind(wire::kindOf(whole)));
     const size_t most = mostBytes(channel, options_.budget, bus_.trailerBytes());
     auto parts = wire::encodeToFit(whole, most, options_.mission);
-    for (wire::EncodedPart& each : parts) say(each.part, std::move(each.message));
+    for (wire::EncodedPart& each : parts) sayWhenSaved(each.part, std::move(each.message));
     int32_t& offered = num_parts_[whole.key];
-    for (auto stale = static_cast<int32_t>(parts.size()); stale < offered; ++stale) {
-      sender_.forget(queueKey(whole.key, stale));
-      said_.erase(queueKey(whole.key, stale));
-    }
+    for (auto stale = static_cast<int32_t>(parts.size()); stale < offered; ++stale)
+      forget(queueKey(whole.key, stale));
     offered = static_cast<int32_t>(parts.size());
   }
+}
+
+void Agent::publishPictures() {
   for (const mapping::Piece& layer : picture_changes_.update(belief_)) {
-    say(layer);
-    for (int32_t stale = layer.num_parts; stale < wire::kMaxPictureLayers; ++stale) {
-      sender_.forget(queueKey(layer.key, stale));
-      said_.erase(queueKey(layer.key, stale));
-    }
+    sayWhenSaved(layer, wire::encode(layer, options_.mission, {}));
+    for (int32_t stale = layer.num_parts; stale < wire::kMaxPictureLayers; ++stale)
+      forget(queueKey(layer.key, stale));
   }
+}
+
+void Agent::forget(const std::string& key) {
+  sender_.forget(key);
+  said_.erase(key);
+  unsaid_.erase(key);
 }
 
 void Agent::say(const mapping::Piece& part) { say(part, wire::encode(part, options_.mission, {})); }
@@ -277,6 +293,12 @@ void Agent::say(const mapping::Piece& part, wire::Bytes message) {
   own_.apply(part);
   others_.apply(part);
   offer(part, std::move(message));
+}
+
+// What a live source has shown it will not show again: then after a crash the robot would say other things.
+void Agent::sayWhenSaved(const mapping::Piece& part, wire::Bytes message) {
+  if (!options_.live || options_.checkpoint_dir.empty()) return say(part, std::move(message));
+  unsaid_.insert_or_assign(queueKey(part.key, part.part), wire::EncodedPart{part, std::move(message)});
 }
 
 // Topics and bricks that wait share datagrams.
@@ -299,10 +321,9 @@ void Agent::offer(const mapping::Piece& part, wire::Bytes message) {
   said_.insert_or_assign(key, part);
 }
 
-// Sharper pictures are the only thing that is made because somebody wants it. To be called when all that
-// changed has been offered, so that a checkpoint can remember what is said here.
+// Sharper pictures are the only thing that is made because somebody wants it, so they are said when a
+// checkpoint has them.
 void Agent::sharpenWanted() {
-  bool has_said = false;
   for (const mapping::ExamplePicture& example : belief_.examples) {
     const mapping::PieceKey shown = {
         options_.explorer.robot, mapping::PieceKind::kPicture, {number(example.topic), example.number, 0}};
@@ -318,12 +339,17 @@ void Agent::sharpenWanted() {
       return said != nullptr && said->version == version;
     };
     if (!isSaid(shown) || isSaid(sharper)) continue;
-    for (const mapping::Piece& layer : wire::sharperPieces(example, sharper.robot, version.epoch)) say(layer);
+    for (const mapping::Piece& layer : wire::sharperPieces(example, sharper.robot, version.epoch)) {
+      wire::Bytes message = wire::encode(layer, options_.mission, {});
+      if (options_.checkpoint_dir.empty()) {
+        say(layer, std::move(message));
+      } else {
+        unsaid_.insert_or_assign(queueKey(layer.key, layer.part), wire::EncodedPart{layer, std::move(message)});
+      }
+    }
     spdlog::info("was asked for a sharper picture of topic {}", number(example.topic));
-    has_said = true;
   }
   wanted_.clear();
-  if (has_said) save();
 }
 
 // As if there had been no crash: what was learnt, what was said, what was still to be said.
@@ -333,7 +359,7 @@ void Agent::resume() {
   path_ = c.path;
   if (!path_.empty()) {
     belief_ = explorer_.belief();
-    changes_.restore(belief_, c.untold, c.looked_until);
+    changes_.restore(belief_, c.untold, c.looked_until, c.seen);
   }
   for (const Checkpoint::Said& said : c.said) {
     own_.apply(said.piece);
@@ -345,9 +371,36 @@ void Agent::resume() {
                static_cast<double>(options_.start_us) * 1e-6);
 }
 
-// To be called when what changed has been offered, and before any of it is sent.
+// Begins to save, unless the last time is not done yet. Between images only.
 void Agent::save() {
-  if (options_.checkpoint_dir.empty()) return;
+  if (options_.checkpoint_dir.empty() || saving_.isRunning()) return;
+  const std::string path = checkpointPath(options_.checkpoint_dir, options_.explorer.robot);
+  saving_.begin([&] {
+    writeCheckpoint(path, snapshot());
+    // Not before there is a checkpoint, and nothing has been said yet: who is killed in between has not begun.
+    if (!epoch_is_kept_) {
+      mapping::writeFileAtomically(epochPath(options_.checkpoint_dir, options_.explorer.robot),
+                                   std::to_string(options_.explorer.epoch) + "\n");
+    }
+  });
+  epoch_is_kept_ = true;
+  being_saved_ = std::exchange(unsaid_, {});
+  lookAtSave(false);
+}
+
+// Says what a checkpoint has by now, and begins another for what waits for one.
+void Agent::lookAtSave(bool waits) {
+  if (waits) {
+    saving_.wait();
+  } else if (saving_.look()) {
+    return;
+  }
+  for (auto& [key, each] : std::exchange(being_saved_, {})) say(each.part, std::move(each.message));
+  const bool counts_images = options_.live && phase_ == wire::Phase::kFlying && !stopRequested();
+  if (!unsaid_.empty() && !counts_images) save();
+}
+
+Checkpoint Agent::snapshot() {
   Checkpoint c{.mission = options_.mission,
                .robot = options_.explorer.robot,
                .epoch = options_.explorer.epoch,
@@ -357,22 +410,23 @@ void Agent::save() {
                .said = {},
                .untold = changes_.waiting(belief_, explorer_),
                .looked_until = changes_.lookedUntil(),
+               .seen = changes_.seen(),
                .path = path_};
   own_.visit([&](const mapping::Piece& piece) {
-    c.said.push_back({piece, sender_.queue().isWaiting(queueKey(piece.key, piece.part))});
+    const std::string key = queueKey(piece.key, piece.part);
+    const comms::Packet* held = sender_.queue().held(key);
+    c.said.push_back({piece, sender_.queue().isWaiting(key), held ? held->bytes : wire::Bytes{}});
   });
-  writeCheckpoint(checkpointPath(options_.checkpoint_dir, options_.explorer.robot), c);
-  // Not before there is a checkpoint, and nothing has been said yet: who is killed in between has not begun.
-  if (!epoch_is_kept_) {
-    mapping::writeFileAtomically(epochPath(options_.checkpoint_dir, c.robot), std::to_string(c.epoch) + "\n");
-  }
-  epoch_is_kept_ = true;
+  // What is said when this is written. Newer than the same above.
+  for (const auto& [key, each] : unsaid_) c.said.push_back({each.part, true, each.message});
+  return c;
 }
 
 // Sends what the budget allows and listens, until mission time `to_us`.
 void Agent::passTimeUntil(int64_t to_us) {
   while (!stopRequested()) {
     const int64_t now = clock_.now();
+    lookAtSave(false);
     const int64_t repair_due = repair_.pump(now);
     const int64_t next = std::min({sender_.pump(now), repair_due, to_us});
     const auto wait_ms = static_cast<int>(std::min<int64_t>(clock_.wallUntil(next) / 1000, 50));
@@ -407,7 +461,7 @@ void Agent::linger() {
   while (!stopRequested()) {
     const auto start = std::chrono::steady_clock::now();
     passTimeUntil(clock_.now() + kSecondUs);
-    const bool busy = sender_.queue().waitingBytes() > 0;
+    const bool busy = sender_.queue().waitingBytes() > 0 || isHolding();
     const bool heard = !busy && isHeard();
     if (!options_.linger && heard) {
       spdlog::info("a fusion node holds all that {} had to say", name_);

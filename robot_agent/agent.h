@@ -14,6 +14,7 @@
 #include "fusion_node/mission_state.h"
 #include "fusion_node/repair.h"
 #include "fusion_node/silence_alarm.h"
+#include "robot_agent/background_save.h"
 #include "robot_agent/checkpoint.h"
 #include "shoal/comms/bus.h"
 #include "shoal/comms/mission_clock.h"
@@ -22,6 +23,7 @@
 #include "shoal/mapping/poses_file.h"
 #include "shoal/robot/explorer.h"
 #include "shoal/wire/picture_pieces.h"
+#include "shoal/wire/piece_codec.h"
 #include "shoal/world/source.h"
 
 namespace shoal::robot_agent {
@@ -68,12 +70,18 @@ class Agent {
   void linger();
   void resume();
   void save();
+  void lookAtSave(bool waits);
+  Checkpoint snapshot();
   void takeIn(const world::Observation& observation);
   void publish();
   void publishAll();
   void publish(const std::vector<mapping::Piece>& changed);
+  void publishPictures();
+  void forget(const std::string& key);
   void say(const mapping::Piece& part);
   void say(const mapping::Piece& part, wire::Bytes message);
+  void sayWhenSaved(const mapping::Piece& part, wire::Bytes message);
+  bool isHolding() const { return !unsaid_.empty() || !being_saved_.empty(); }
   void offer(const mapping::Piece& part, wire::Bytes message);
   void sharpenWanted();
   void passTimeUntil(int64_t to_us);
@@ -95,6 +103,10 @@ class Agent {
   mapping::BeliefStore own_;                        // what was said, for its digest
   std::map<mapping::PieceKey, int32_t> num_parts_;  // keys in the send queue
   std::map<std::string, mapping::Piece, std::less<>> said_;  // by its keys
+  // What could not be said again the same way after a crash, and so waits until a checkpoint has it: for one
+  // to be begun, and to be done. By its keys.
+  std::map<std::string, wire::EncodedPart> unsaid_, being_saved_;
+  BackgroundSave saving_;
   fusion_node::MissionState others_;
   comms::MissionClock clock_;
   comms::Sender sender_;

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot_agent/checkpoint.h"
 
+#include <array>
 #include <bit>
 #include <filesystem>
 #include <span>
 #include <stdexcept>
 #include <string_view>
+#include <system_error>
+#include <vector>
 
 #include "shoal/mapping/atomic_file.h"
 #include "shoal/random.h"
@@ -16,13 +19,19 @@
 namespace shoal::robot_agent {
 namespace {
 
-constexpr std::string_view kMagic = "SHOALRC3";  // the last letter is the version
+constexpr std::string_view kMagic = "SHOALRC4";  // the last letter is the version
+constexpr size_t kTrailer = 16;                   // checksum, and how long the explorer's part is
 
-uint64_t hashOf(std::span<const uint8_t> bytes) {
-  uint64_t hash = bytes.size();
+// Of several runs of bytes, each of so many.
+uint64_t hashOf(std::span<const uint8_t> bytes, uint64_t hash = 0) {
+  hash = hashCombine(hash, bytes.size());
   for (; bytes.size() >= 8; bytes = bytes.subspan(8))
     hash = hashCombine(hash, wire::bigEndian(bytes.first(8)));
   return hashCombine(hash, wire::bigEndian(bytes));
+}
+
+std::string_view textOf(std::span<const uint8_t> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
 void putNumber(wire::Bytes& out, int64_t value) { wire::putBigEndian(out, static_cast<uint64_t>(value), 8); }
@@ -34,6 +43,16 @@ void putBlob(wire::Bytes& out, std::span<const uint8_t> blob) {
 
 int64_t number64(wire::ByteReader& in) { return static_cast<int64_t>(in.bigEndian(8)); }
 
+void putBrick(wire::Bytes& out, const mapping::Brick& brick) {
+  for (const int32_t i : brick) wire::putBigEndian(out, static_cast<uint32_t>(i), 4);
+}
+
+mapping::Brick readBrick(wire::ByteReader& in) {
+  mapping::Brick brick{};
+  for (int32_t& i : brick) i = static_cast<int32_t>(in.bigEndian(4));
+  return brick;
+}
+
 Checkpoint read(wire::ByteReader& in, const std::string& path) {
   const auto damaged = [&path](const std::string& what) {
     return std::runtime_error(path + " is damaged: " + what);
@@ -44,8 +63,6 @@ Checkpoint read(wire::ByteReader& in, const std::string& path) {
   c.epoch = static_cast<int32_t>(number64(in));
   c.mission_us = number64(in);
   c.wall_us = number64(in);
-  const auto explorer = in.take(in.varint());
-  c.explorer.assign(explorer.begin(), explorer.end());
   for (uint64_t n = in.varint(); n > 0 && !in.failed(); --n) {
     const bool waits = in.bigEndian(1) != 0;
     const auto message = in.take(in.varint());
@@ -53,23 +70,22 @@ Checkpoint read(wire::ByteReader& in, const std::string& path) {
     if (!header) throw damaged("what is no message stands for a piece");
     const auto pieces = wire::decodePieces(header->kind, message);
     if (!pieces) throw damaged("a piece is refused: " + std::string(wire::name(pieces.error())));
-    for (const mapping::Piece& piece : *pieces) c.said.push_back({piece, waits});
+    for (const mapping::Piece& piece : *pieces) c.said.push_back({piece, waits, {}});
   }
   for (uint64_t n = in.varint(); n > 0 && !in.failed(); --n) {
     mapping::BeliefChanges::Waiting waiting;
     waiting.key.robot = c.robot;
     waiting.key.kind = static_cast<mapping::PieceKind>(in.bigEndian(1));
-    if (waiting.key.kind != mapping::PieceKind::kBrick && waiting.key.kind != mapping::PieceKind::kCertainty)
-      throw damaged("what waits is no brick");
-    for (int32_t& i : waiting.key.index) i = static_cast<int32_t>(in.bigEndian(4));
+    if (waiting.key.kind != mapping::PieceKind::kTopic && waiting.key.kind != mapping::PieceKind::kBrick &&
+        waiting.key.kind != mapping::PieceKind::kCertainty)
+      throw damaged("what waits is neither topic nor brick");
+    waiting.key.index = readBrick(in);
     waiting.told_hash = in.bigEndian(8);
     waiting.since = static_cast<int32_t>(in.bigEndian(4));
     c.untold.push_back(waiting);
   }
-  if (in.bigEndian(1) != 0) {
-    c.looked_until.emplace();
-    for (int32_t& i : *c.looked_until) i = static_cast<int32_t>(in.bigEndian(4));
-  }
+  if (in.bigEndian(1) != 0) c.looked_until = readBrick(in);
+  for (uint64_t n = in.varint(); n > 0 && !in.failed(); --n) c.seen.insert(readBrick(in));
   for (uint64_t n = in.varint(); n > 0 && !in.failed(); --n) {
     mapping::StampedPose pose;
     pose.time.us = number64(in);
@@ -78,6 +94,8 @@ Checkpoint read(wire::ByteReader& in, const std::string& path) {
         pose.world_from_camera.matrix()(row, column) = std::bit_cast<double>(in.bigEndian(8));
     c.path.push_back(pose);
   }
+  const auto explorer = in.take(in.varint());
+  c.explorer.assign(explorer.begin(), explorer.end());
   if (in.failed() || in.remaining() != 0) throw damaged("its lengths do not fit");
   return c;
 }
@@ -97,23 +115,22 @@ void writeCheckpoint(const std::string& path, const Checkpoint& c) {
   for (const int64_t value :
        {int64_t{c.mission}, int64_t{number(c.robot)}, int64_t{c.epoch}, c.mission_us, c.wall_us})
     putNumber(out, value);
-  putBlob(out, c.explorer);
   wire::putVarint(out, c.said.size());
   for (const Checkpoint::Said& said : c.said) {
     out.push_back(said.waits ? 1 : 0);
-    putBlob(out, wire::encode(said.piece, c.mission, {}));
+    putBlob(out, said.message.empty() ? wire::encode(said.piece, c.mission, {}) : said.message);
   }
   wire::putVarint(out, c.untold.size());
   for (const mapping::BeliefChanges::Waiting& waiting : c.untold) {
     out.push_back(static_cast<uint8_t>(waiting.key.kind));
-    for (const int32_t i : waiting.key.index) wire::putBigEndian(out, static_cast<uint32_t>(i), 4);
+    putBrick(out, waiting.key.index);
     wire::putBigEndian(out, waiting.told_hash, 8);
     wire::putBigEndian(out, static_cast<uint32_t>(waiting.since), 4);
   }
   out.push_back(c.looked_until ? 1 : 0);
-  if (c.looked_until) {
-    for (const int32_t i : *c.looked_until) wire::putBigEndian(out, static_cast<uint32_t>(i), 4);
-  }
+  if (c.looked_until) putBrick(out, *c.looked_until);
+  wire::putVarint(out, c.seen.size());
+  for (const mapping::Brick& brick : c.seen) putBrick(out, brick);
   wire::putVarint(out, c.path.size());
   for (const mapping::StampedPose& pose : c.path) {
     putNumber(out, pose.time.us);
@@ -121,18 +138,37 @@ void writeCheckpoint(const std::string& path, const Checkpoint& c) {
       for (Eigen::Index column = 0; column < 4; ++column)
         wire::putBigEndian(out, std::bit_cast<uint64_t>(pose.world_from_camera.matrix()(row, column)), 8);
   }
-  wire::putBigEndian(out, hashOf(out), 8);
-  mapping::writeFileAtomically(path, {reinterpret_cast<const char*>(out.data()), out.size()});
+  wire::putVarint(out, c.explorer.size());
+  // Its mind is most of it, and is not copied.
+  wire::Bytes checksum;
+  wire::putBigEndian(checksum, hashOf(c.explorer, hashOf(out)), 8);
+  wire::putBigEndian(checksum, c.explorer.size(), 8);
+  const std::array contents = {textOf(out), textOf(c.explorer), textOf(checksum)};
+  mapping::writeFileAtomically(path, contents);
+}
+
+void removeUnfinished(const std::string& path) {
+  const std::filesystem::path file(path);
+  std::error_code error;
+  std::vector<std::filesystem::path> unfinished;
+  for (const auto& entry : std::filesystem::directory_iterator(file.parent_path(), error)) {
+    if (entry.path().filename().string().starts_with(file.filename().string() + ".tmp"))
+      unfinished.push_back(entry.path());
+  }
+  for (const auto& each : unfinished) std::filesystem::remove(each, error);
 }
 
 std::optional<Checkpoint> readCheckpoint(const std::string& path) {
   if (!std::filesystem::exists(path)) return std::nullopt;
   const std::string text = mapping::readFile(path);
   const auto bytes = std::span(reinterpret_cast<const uint8_t*>(text.data()), text.size());
-  if (bytes.size() < kMagic.size() + 8 || !text.starts_with(kMagic))
+  if (bytes.size() < kMagic.size() + kTrailer || !text.starts_with(kMagic))
     throw std::runtime_error(path + " is no checkpoint of this version");
-  const auto body = bytes.first(bytes.size() - 8);
-  if (hashOf(body) != wire::bigEndian(bytes.last(8))) throw std::runtime_error(path + " is damaged");
+  const auto body = bytes.first(bytes.size() - kTrailer);
+  const uint64_t mind = wire::bigEndian(bytes.last(8));
+  if (mind > body.size() || hashOf(body.last(mind), hashOf(body.first(body.size() - mind))) !=
+                                wire::bigEndian(bytes.last(kTrailer).first(8)))
+    throw std::runtime_error(path + " is damaged");
   wire::ByteReader in(body.subspan(kMagic.size()));
   return read(in, path);
 }

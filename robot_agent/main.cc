@@ -118,6 +118,7 @@ void resume(Flags& flags, world::RobotId id) {
   options.checkpoint_dir = flags.checkpoint;
   const std::string path = robot_agent::checkpointPath(flags.checkpoint, id);
   const std::string epoch_path = robot_agent::epochPath(flags.checkpoint, id);
+  robot_agent::removeUnfinished(path);
   std::optional<robot_agent::Checkpoint> checkpoint;
   try {
     checkpoint = robot_agent::readCheckpoint(path);

@@ -162,6 +162,11 @@ bool SendQueue::isWaiting(std::string_view key) const {
   return found != entries_.end() && found->second.waiting;
 }
 
+const Packet* SendQueue::held(std::string_view key) const {
+  const auto found = entries_.find(key);
+  return found == entries_.end() ? nullptr : &found->second.packet;
+}
+
 int64_t SendQueue::waitingBytes() const {
   int64_t bytes = 0;
   for (const Class& each : classes_) bytes += each.waiting_bytes;

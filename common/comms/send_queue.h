@@ -89,6 +89,9 @@ class SendQueue {
   /// True when `key` is held and its content was not sent yet.
   bool isWaiting(std::string_view key) const;
 
+  /// What is held of `key`, sent or not; null when it is not held. Valid until the next non-const call.
+  const Packet* held(std::string_view key) const;
+
   size_t numKeys() const { return entries_.size(); }
   size_t numWaiting(TrafficClass traffic) const { return of(traffic).waiting.size(); }
   /// On the wire, if every packet went alone.

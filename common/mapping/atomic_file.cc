@@ -21,24 +21,29 @@ namespace {
 }  // namespace
 
 void writeFileAtomically(const std::string& path, std::string_view content) {
+  writeFileAtomically(path, std::span(&content, 1));
+}
+
+void writeFileAtomically(const std::string& path, std::span<const std::string_view> contents) {
   const auto folder = std::filesystem::path(path).parent_path();
   std::error_code error;
   if (!folder.empty()) std::filesystem::create_directories(folder, error);
   const std::string temporary = path + ".tmp" + std::to_string(::getpid());
   const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   if (file < 0) fail("cannot write", temporary);
-  size_t written = 0;
-  while (written < content.size()) {
-    const ssize_t n = ::write(file, content.data() + written, content.size() - written);
-    if (n < 0 && errno == EINTR) continue;
-    if (n < 0) {
-      const int reason = errno;
-      ::close(file);
-      ::unlink(temporary.c_str());
-      errno = reason;
-      fail("cannot write", temporary);
+  for (std::string_view rest : contents) {
+    while (!rest.empty()) {
+      const ssize_t n = ::write(file, rest.data(), rest.size());
+      if (n < 0 && errno == EINTR) continue;
+      if (n < 0) {
+        const int reason = errno;
+        ::close(file);
+        ::unlink(temporary.c_str());
+        errno = reason;
+        fail("cannot write", temporary);
+      }
+      rest.remove_prefix(static_cast<size_t>(n));
     }
-    written += static_cast<size_t>(n);
   }
   ::fsync(file);
   ::close(file);

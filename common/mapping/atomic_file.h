@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -10,6 +11,9 @@ namespace shoal::mapping {
 /// the folder when it is missing.
 /// @throws std::runtime_error naming the path and what the system said.
 void writeFileAtomically(const std::string& path, std::string_view content);
+
+/// The same of what lies in several places, one after the other.
+void writeFileAtomically(const std::string& path, std::span<const std::string_view> contents);
 
 /// The whole of a file. @throws std::runtime_error naming the path when it cannot be read.
 std::string readFile(const std::string& path);

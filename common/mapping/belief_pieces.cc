@@ -17,16 +17,15 @@ std::vector<int32_t> groupSizes(const LocalBelief& belief) {
   return sizes;
 }
 
-std::vector<Piece> topicPieces(const LocalBelief& belief) {
-  const std::vector<int32_t> group_sizes = groupSizes(belief);
-  std::vector<Piece> pieces;
-  for (const BelievedTopic& topic : belief.topics) {
-    pieces.push_back({.key = {belief.robot, PieceKind::kTopic, {number(topic.id), 0, 0}},
-                      .version = belief.version,
-                      .content = TopicPart{topic.created, topic.weight, group_sizes,
-                                           quantize(topic.words, belief.detail)}});
-  }
-  return pieces;
+PieceKey topicKey(const LocalBelief& belief, const BelievedTopic& topic) {
+  return {belief.robot, PieceKind::kTopic, {number(topic.id), 0, 0}};
+}
+
+Piece topicPiece(const LocalBelief& belief, const BelievedTopic& topic) {
+  return {.key = topicKey(belief, topic),
+          .version = belief.version,
+          .content =
+              TopicPart{topic.created, topic.weight, groupSizes(belief), quantize(topic.words, belief.detail)}};
 }
 
 // What is looked up by brick, cell after cell in their order: mostly the one of the cell before.
@@ -118,10 +117,17 @@ uint64_t hashOf(Piece piece) {
   return contentHash(piece);
 }
 
+// Adjoining bricks have different turns, and so have topics one after the other.
+bool isTurn(const BeliefChanges::Turn& turn, const Brick& index) {
+  const int64_t number = index[0] + int64_t{2} * index[1] + int64_t{3} * index[2];
+  return (number % turn.of + turn.of) % turn.of == turn.number;
+}
+
 }  // namespace
 
 std::vector<Piece> wholePieces(const LocalBelief& belief) {
-  std::vector<Piece> pieces = topicPieces(belief);
+  std::vector<Piece> pieces;
+  for (const BelievedTopic& topic : belief.topics) pieces.push_back(topicPiece(belief, topic));
   const WholeBricks bricks(belief);
   for (const PieceKind kind : kBrickKinds) {
     for (const auto& [brick, cells] : bricks.all())
@@ -130,12 +136,15 @@ std::vector<Piece> wholePieces(const LocalBelief& belief) {
   return pieces;
 }
 
-std::vector<Piece> BeliefChanges::changedTopics(const LocalBelief& belief) {
+std::vector<Piece> BeliefChanges::changedTopics(const LocalBelief& belief, const Turn& turn) {
   std::vector<Piece> changed;
   std::set<PieceKey> there;
-  for (Piece& piece : topicPieces(belief)) {
-    there.insert(piece.key);
-    Told& told = told_[piece.key];
+  for (const BelievedTopic& topic : belief.topics) {
+    const PieceKey key = topicKey(belief, topic);
+    there.insert(key);
+    if (!isTurn(turn, key.index)) continue;
+    Piece piece = topicPiece(belief, topic);
+    Told& told = told_[key];
     const uint64_t hash = hashOf(piece);
     if (told.hash == hash) continue;
     told.hash = hash;
@@ -144,7 +153,7 @@ std::vector<Piece> BeliefChanges::changedTopics(const LocalBelief& belief) {
   const std::vector<int32_t> group_sizes = groupSizes(belief);
   for (auto& [key, told] : told_) {
     if (key.kind != PieceKind::kTopic) break;  // topics come first
-    if (told.hash == 0 || there.contains(key)) continue;
+    if (told.hash == 0 || there.contains(key) || !isTurn(turn, key.index)) continue;
     told.hash = 0;  // retired
     changed.push_back({.key = key, .version = belief.version, .content = TopicPart{{0}, 0, group_sizes, {}}});
   }
@@ -236,10 +245,14 @@ std::vector<Piece> BeliefChanges::update(const LocalBelief& belief, size_t most_
 }
 
 std::vector<Piece> BeliefChanges::update(const LocalBelief& outline, const BelievedBricks& bricks,
-                                         const std::set<Brick>& seen, size_t most_bricks, size_t most_cells) {
-  std::vector<Piece> changed = changedTopics(outline);
+                                         const std::set<Brick>& seen, size_t most_bricks, size_t most_cells,
+                                         const Turn& turn) {
+  std::vector<Piece> changed = changedTopics(outline, turn);
   Round round(*this, outline, bricks);
-  for (const Brick& brick : seen) round.look(brick);
+  seen_.insert(seen.begin(), seen.end());
+  std::set<Brick> due;
+  std::erase_if(seen_, [&](const Brick& brick) { return isTurn(turn, brick) && due.insert(brick).second; });
+  for (const Brick& brick : due) round.look(brick);
   const std::optional<Brick> begun_at = looked_until_;
   bool has_wrapped = false;
   for (size_t num_looked = 0; num_looked < most_cells;) {
@@ -252,7 +265,7 @@ std::vector<Piece> BeliefChanges::update(const LocalBelief& outline, const Belie
     num_looked += round.look(*next);
     looked_until_ = next;
   }
-  const std::set<PieceKey> told = round.choose(seen, most_bricks);
+  const std::set<PieceKey> told = round.choose(due, most_bricks);
   for (const PieceKey& key : told) changed.push_back(brickPiece(outline, key, round.cellsOf(key.index)));
   return changed;
 }
@@ -267,6 +280,18 @@ std::vector<BeliefChanges::Waiting> BeliefChanges::waiting() const {
 std::vector<BeliefChanges::Waiting> BeliefChanges::waiting(const LocalBelief& outline,
                                                            const BelievedBricks& bricks) const {
   std::vector<Waiting> waiting;
+  std::set<PieceKey> there;
+  for (const BelievedTopic& topic : outline.topics) {
+    const PieceKey key = topicKey(outline, topic);
+    there.insert(key);
+    const auto found = told_.find(key);
+    const uint64_t told_hash = found == told_.end() ? 0 : found->second.hash;
+    if (told_hash != hashOf(topicPiece(outline, topic))) waiting.push_back({key, told_hash, kNotWaiting});
+  }
+  for (const auto& [key, told] : told_) {
+    if (key.kind != PieceKind::kTopic) break;  // topics come first
+    if (told.hash != 0 && !there.contains(key)) waiting.push_back({key, told.hash, kNotWaiting});
+  }
   for (std::optional<Brick> brick = bricks.after({}); brick; brick = bricks.after(brick)) {
     const BrickSums sums = sumsOf(bricks.cellsOf(*brick), outline.detail);
     for (const PieceKind kind : kBrickKinds) {
@@ -282,10 +307,11 @@ std::vector<BeliefChanges::Waiting> BeliefChanges::waiting(const LocalBelief& ou
 }
 
 void BeliefChanges::restore(const LocalBelief& belief, const std::vector<Waiting>& waiting,
-                            const std::optional<Brick>& looked_until) {
+                            const std::optional<Brick>& looked_until, const std::set<Brick>& seen) {
   *this = {};
   update(belief);
   looked_until_ = looked_until;
+  seen_ = seen;
   for (const Waiting& w : waiting) {
     told_[w.key] = {w.told_hash, w.since};
     if (w.since != kNotWaiting) waiting_.emplace(w.since, w.key);

@@ -23,7 +23,9 @@ std::vector<uint8_t> Explorer::checkpoint() const {
   const std::vector<int64_t> camera = words_->learnt();
   out.u64(camera.size());
   for (const int64_t number : camera) out.i64(number);
-  out.bytes(learner_->checkpoint());
+  const std::vector<uint8_t> learner = learner_->checkpoint();
+  out.reserve(learner.size() + (1 << 20));
+  out.bytes(learner);
   out.bytes(book_ ? book_->checkpoint() : std::vector<uint8_t>{});
   return std::move(out).finish();
 }

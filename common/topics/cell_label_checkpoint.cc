@@ -16,6 +16,7 @@ namespace {
 
 const std::string kKind = "shoalCLM";
 constexpr uint32_t kVersion = 4;
+constexpr size_t kCellBytes = 56, kWordBytes = 8;
 
 }  // namespace
 
@@ -44,6 +45,9 @@ std::vector<uint8_t> CellLabelModel::checkpoint() const {
     out.i64(slots_.created(k).us);
     out.i32(twin_of_[static_cast<size_t>(k)]);
   }
+  size_t bytes = 0;
+  for (const LabelledCell& cell : cells_) bytes += kCellBytes + kWordBytes * cell.words.size();
+  out.reserve(bytes + (1 << 16));
   out.u64(cells_.size());
   for (const LabelledCell& cell : cells_) {
     for (const int32_t value : {cell.index.x, cell.index.y, cell.index.z, cell.slot, toldSlot(cell)})
@@ -104,7 +108,7 @@ CellLabelModel CellLabelModel::resumed(const CellLabelHyperparameters& hyperpara
   std::vector<int64_t> total(static_cast<size_t>(model.counts_.vocabularySize()));  // of each word
   for (const KnownTopic& topic : known)
     for (const world::WordCount& w : topic.words) total[static_cast<size_t>(w.word)] += w.count;
-  const size_t num_cells = in.count(56);
+  const size_t num_cells = in.count(kCellBytes);
   for (size_t i = 0; i < num_cells; ++i) {
     world::CellIndex index;
     for (int32_t* const coordinate : {&index.x, &index.y, &index.z}) *coordinate = in.i32();
@@ -124,7 +128,7 @@ CellLabelModel CellLabelModel::resumed(const CellLabelHyperparameters& hyperpara
     cell.num_draws = in.u32();
     cell.seen_observation = in.i32();
     cell.seen.us = in.i64();
-    const size_t num_words = in.count(8);
+    const size_t num_words = in.count(kWordBytes);
     in.demand(num_words > 0, "a cell has no words");
     for (size_t w = 0; w < num_words; ++w) {
       const world::WordCount word{in.i32(), in.i32()};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "shoal/topics/state_bytes.h"
 
+#include <array>
 #include <stdexcept>
 #include <utility>
 
@@ -42,7 +43,9 @@ void StateWriter::bytes(std::span<const uint8_t> bytes) {
 }
 
 void StateWriter::put(uint64_t value, int num_bytes) {
-  for (int i = 0; i < num_bytes; ++i) bytes_.push_back(static_cast<uint8_t>(value >> 8 * i));
+  std::array<uint8_t, 8> digits;
+  for (size_t i = 0; i < digits.size(); ++i) digits[i] = static_cast<uint8_t>(value >> 8 * i);
+  bytes_.insert(bytes_.end(), digits.begin(), digits.begin() + num_bytes);
 }
 
 StateReader::StateReader(std::span<const uint8_t> bytes, const std::string& kind, uint32_t version)

@@ -15,6 +15,9 @@ class StateWriter {
   /// @param kind  Eight characters.
   StateWriter(const std::string& kind, uint32_t version);
 
+  /// Makes room for so many bytes more.
+  void reserve(size_t bytes) { bytes_.reserve(bytes_.size() + bytes); }
+
   void u64(uint64_t value) { put(value, 8); }
   void i64(int64_t value) { u64(static_cast<uint64_t>(value)); }
   void u32(uint32_t value) { put(value, 4); }

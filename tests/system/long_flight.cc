@@ -101,7 +101,7 @@ void print(const std::vector<Row>& rows, size_t first) {
 int run(int argc, char** argv) {
   const int32_t images = argc > 1 ? std::atoi(argv[1]) : 10'000;
   robot_agent::AgentOptions options;
-  options.explorer.cell_size_m = argc > 2 ? std::atof(argv[2]) : 0.8;
+  options.explorer.cell_size_m = argc > 2 ? std::atof(argv[2]) : 1.25;
   options.explorer.keeps_pictures = true;
   options.budget = argc > 3 ? std::atoi(argv[3]) : 2000;
   options.checkpoint_dir = argc > 4 ? argv[4] : "";
