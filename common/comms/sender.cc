@@ -137,6 +137,14 @@ int64_t Sender::backlogOf(std::span<const SendQueue::Next> waiting, size_t guess
     for (const SendQueue::Next& each : some) bytes += static_cast<int64_t>(wireSize(*each.packet));
     return bytes;
   };
+  // Of a packet of any size, cut into datagrams.
+  const auto inDatagrams = [this](Packet packet) {
+    packet.trailer = link_.trailerBytes();
+    const auto bytes = static_cast<int64_t>(packet.bytes.size());
+    const auto most = static_cast<int64_t>(options_.most_joined_bytes);
+    const int64_t frame = static_cast<int64_t>(wireSize(packet)) - bytes;
+    return bytes + std::max(frame, frame * bytes / most);
+  };
   int64_t tried = 0;  // bytes of what was tried, each alone
   int64_t taken = 0;  // and in datagrams
   size_t end = 0;     // of the last trial
@@ -144,9 +152,20 @@ int64_t Sender::backlogOf(std::span<const SendQueue::Next> waiting, size_t guess
   for (size_t trial = 0; trial < kBacklogTrials && end < waiting.size(); ++trial) {
     const size_t begin = std::max(end, trial * waiting.size() / kBacklogTrials);
     const auto rest = waiting.subspan(begin);
-    const Made made = pack(rest.first(std::min(rest.size(), kMostJoined)), guess);
     has_gaps = has_gaps || begin > end;
-    if (has_gaps && made.count == rest.size()) break;  // not full: not like the others
+    if (has_gaps) {  // about as much as a datagram holds will do
+      guess = std::max<size_t>(guess, 2);
+      if (rest.size() < guess) break;  // not full: not like the others
+      const auto some = rest.first(guess);
+      const auto joined = options_.join(some);
+      end = begin + some.size();
+      tried += alone(some);
+      taken += joined ? inDatagrams(*joined) : alone(some);
+      if (joined) guess = guess * options_.most_joined_bytes / std::max<size_t>(joined->bytes.size(), 1);
+      guess = std::min(guess, kMostJoined);
+      continue;
+    }
+    const Made made = pack(rest.first(std::min(rest.size(), kMostJoined)), guess);
     end = begin + made.count;
     guess = made.count;
     tried += alone(rest.first(made.count));
