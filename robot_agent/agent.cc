@@ -238,7 +238,8 @@ void Agent::takeIn(const world::Observation& observation) {
   total_ms_ += took.count();
   const robot::StageTimes& t = times.stages;
   spdlog::debug(
-      "observation {}: {:.1f} ms; of CPU words {:.1f} ms, topics {:.1f} ms, belief {:.1f} ms, pictures {:.1f} "
+      "observation {}: {:.1f} ms; of CPU words {:.1f} ms, topics {:.1f} ms, belief {:.1f} ms, pictures "
+      "{:.1f} "
       "ms, publish {:.1f} ms, save {:.1f} ms",
       observation.number, took.count(), t.words_ms, t.topics_ms, t.belief_ms, t.pictures_ms, times.publish_ms,
       times.save_ms);
@@ -344,7 +345,8 @@ void Agent::sharpenWanted() {
       if (options_.checkpoint_dir.empty()) {
         say(layer, std::move(message));
       } else {
-        unsaid_.insert_or_assign(queueKey(layer.key, layer.part), wire::EncodedPart{layer, std::move(message)});
+        unsaid_.insert_or_assign(queueKey(layer.key, layer.part),
+                                 wire::EncodedPart{layer, std::move(message)});
       }
     }
     spdlog::info("was asked for a sharper picture of topic {}", number(example.topic));
@@ -377,7 +379,8 @@ void Agent::save() {
   const std::string path = checkpointPath(options_.checkpoint_dir, options_.explorer.robot);
   saving_.begin([&] {
     writeCheckpoint(path, snapshot());
-    // Not before there is a checkpoint, and nothing has been said yet: who is killed in between has not begun.
+    // Not before there is a checkpoint, and nothing has been said yet: who is killed in between has not
+    // begun.
     if (!epoch_is_kept_) {
       mapping::writeFileAtomically(epochPath(options_.checkpoint_dir, options_.explorer.robot),
                                    std::to_string(options_.explorer.epoch) + "\n");

@@ -45,10 +45,10 @@ struct AgentOptions {
   bool fuse = false;      ///< hold everybody's beliefs and fuse them too
   matching::MatcherOptions matcher = matching::usualMatcher();  ///< for `fuse`
   std::string out_dir;                                          ///< where robots/RNN/ goes; empty = nowhere
-  bool linger = false;               ///< stay after landing until told to stop, heard or not
-  std::string checkpoint_dir;        ///< where checkpoints go; empty = nowhere
-  std::optional<Checkpoint> resume;  ///< what to go on from, of this mission, robot and epoch
-  bool live = false;                 ///< what the source has shown it will not show again
+  bool linger = false;                           ///< stay after landing until told to stop, heard or not
+  std::string checkpoint_dir;                    ///< where checkpoints go; empty = nowhere
+  std::optional<Checkpoint> resume;              ///< what to go on from, of this mission, robot and epoch
+  bool live = false;                             ///< what the source has shown it will not show again
   std::function<void(const ImageTimes&)> watch;  ///< told after each image, to measure; may be empty
 };
 

@@ -20,7 +20,7 @@ namespace shoal::robot_agent {
 namespace {
 
 constexpr std::string_view kMagic = "SHOALRC4";  // the last letter is the version
-constexpr size_t kTrailer = 16;                   // checksum, and how long the explorer's part is
+constexpr size_t kTrailer = 16;                  // checksum, and how long the explorer's part is
 
 // Of several runs of bytes, each of so many.
 uint64_t hashOf(std::span<const uint8_t> bytes, uint64_t hash = 0) {

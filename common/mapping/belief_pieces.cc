@@ -24,8 +24,8 @@ PieceKey topicKey(const LocalBelief& belief, const BelievedTopic& topic) {
 Piece topicPiece(const LocalBelief& belief, const BelievedTopic& topic) {
   return {.key = topicKey(belief, topic),
           .version = belief.version,
-          .content =
-              TopicPart{topic.created, topic.weight, groupSizes(belief), quantize(topic.words, belief.detail)}};
+          .content = TopicPart{topic.created, topic.weight, groupSizes(belief),
+                               quantize(topic.words, belief.detail)}};
 }
 
 // What is looked up by brick, cell after cell in their order: mostly the one of the cell before.

@@ -96,7 +96,7 @@ class BeliefChanges {
   std::map<PieceKey, Told> told_;
   std::set<std::pair<int32_t, PieceKey>> waiting_;  // of bricks, by since
   std::optional<Brick> looked_until_;
-  std::set<Brick> seen_;          // their turn has not come
+  std::set<Brick> seen_;         // their turn has not come
   world::Timestamp seen_until_;  // by the belief before
 };
 

@@ -358,6 +358,61 @@ TEST(BeliefChangesTest, ALookAtALargeMapIsBoundedAndMissesNothing) {
             (std::vector<int32_t>{7}));
 }
 
+// Topics come, change and go.
+void mutateTopics(LocalBelief& belief, Random& random) {
+  std::vector<BelievedTopic> topics;
+  for (int32_t id = 0; id < 6; ++id) {
+    if (random.below(5) == 0) continue;
+    const auto known = std::ranges::find(belief.topics, world::TopicId{id}, &BelievedTopic::id);
+    const bool keeps = known != belief.topics.end() && random.below(2) == 0;
+    const auto weight = static_cast<int32_t>(1 + random.below(50));
+    topics.push_back(keeps ? *known : BelievedTopic{world::TopicId{id}, {0}, weight, {{id, weight}}});
+  }
+  belief.topics = std::move(topics);
+}
+
+TEST(BeliefChangesTest, InTurnsEveryTopicAndSeenBrickIsToldOnceARound) {
+  constexpr int32_t kTurns = 5;
+  BeliefChanges changes;
+  BeliefStore store;
+  std::map<PieceKey, int> turn_of;
+  Random random(3);
+  LocalBelief b = row(0, 0, 0);
+  world::Timestamp seen_until;
+  for (int step = 0; step < 40; ++step) {
+    mutateTopics(b, random);
+    for (BelievedCell& cell : b.cells) {  // all are seen
+      cell.topic = world::TopicId{4 * (step % 2)};
+      cell.seen.us = 5000 + step;
+    }
+    const auto told = changes.update(outlineOf(b), BricksOf(b), seenIn(b, seen_until), 1000, 0,
+                                     {.number = step % kTurns, .of = kTurns});
+    size_t bricks = 0;
+    for (const Piece& piece : told) {
+      store.apply(piece);
+      EXPECT_EQ(piece.version.observation, b.version.observation);
+      EXPECT_EQ(turn_of.try_emplace(piece.key, step % kTurns).first->second, step % kTurns);
+      bricks += piece.key.kind == PieceKind::kBrick;
+    }
+    EXPECT_EQ(bricks, 40u / kTurns);  // of a row evenly
+    EXPECT_EQ(changes.seen().size(), 32u);  // the others wait for theirs
+    seen_until = latestIn(b);
+    ++b.version.observation;
+  }
+  for (const Piece& piece : changes.update(b)) store.apply(piece);
+  EXPECT_TRUE(changes.seen().empty());
+  for (const Piece& whole : wholePieces(b)) {
+    const Piece* held = store.find(whole.key, 0);
+    ASSERT_NE(held, nullptr);
+    EXPECT_EQ(held->content, whole.content);
+  }
+  store.visitTopics([&](const Piece& piece) {
+    const bool is_there =
+        std::ranges::find(b.topics, world::TopicId{piece.key.index[0]}, &BelievedTopic::id) != b.topics.end();
+    EXPECT_EQ(std::get<TopicPart>(piece.content).weight > 0, is_there);
+  });
+}
+
 TEST(BeliefChangesTest, ResumingAmidALookEqualsNeverHavingStopped) {
   for (uint64_t seed = 0; seed < 20; ++seed) {
     Random random(seed);
@@ -366,18 +421,22 @@ TEST(BeliefChangesTest, ResumingAmidALookEqualsNeverHavingStopped) {
     LocalBelief b = row(0, 0, 0);
     world::Timestamp seen_until;
     for (int step = 0; step < 30; ++step) {
+      const auto turn = [&](int number) { return BeliefChanges::Turn{number % 3, 3}; };
       const auto told = changes.update(outlineOf(b), BricksOf(b), seenIn(b, seen_until), 1 + random.below(9),
-                                       random.below(12));
+                                       random.below(12), turn(step));
       for (const Piece& piece : told) store.apply(piece);
       BeliefChanges resumed;
-      resumed.restore(b, changes.waiting(outlineOf(b), BricksOf(b)), changes.lookedUntil());
+      resumed.restore(b, changes.waiting(outlineOf(b), BricksOf(b)), changes.lookedUntil(), changes.seen());
       seen_until = latestIn(b);
       b = mutated(b, random);
+      mutateTopics(b, random);
       BeliefChanges unbroken = changes;
       for (int more = 0; more < 3; ++more) {
         const size_t most = random.below(9), most_cells = random.below(12);
-        EXPECT_EQ(resumed.update(outlineOf(b), BricksOf(b), seenIn(b, seen_until), most, most_cells),
-                  unbroken.update(outlineOf(b), BricksOf(b), seenIn(b, seen_until), most, most_cells));
+        EXPECT_EQ(resumed.update(outlineOf(b), BricksOf(b), seenIn(b, seen_until), most, most_cells,
+                                 turn(step + more)),
+                  unbroken.update(outlineOf(b), BricksOf(b), seenIn(b, seen_until), most, most_cells,
+                                  turn(step + more)));
       }
     }
     for (const Piece& piece : changes.update(b)) store.apply(piece);

@@ -154,7 +154,8 @@ TEST_F(CheckpointTest, GoingOnEqualsNeverHavingStopped) {
   EXPECT_EQ(held("unbroken").path.size(), size_t{kImages});
   EXPECT_GT(held("unbroken").said.size(), 100u);
   // Killed before the first save is done, right after one has begun, and on the way to the next.
-  for (const int32_t at : {3, 25, 26, 40, 51}) ASSERT_EQ(WTERMSIG(fly("killed", {.until = at, .signal = SIGKILL})), SIGKILL);
+  for (const int32_t at : {3, 25, 26, 40, 51})
+    ASSERT_EQ(WTERMSIG(fly("killed", {.until = at, .signal = SIGKILL})), SIGKILL);
   EXPECT_LE(held("killed").path.size(), 50u);
   ASSERT_EQ(fly("killed", {}), 0);
   expectSame(held("killed"), held("unbroken"));
@@ -170,8 +171,9 @@ TEST_F(CheckpointTest, InFlightItIsOfABetweenImagesMoment) {
   // Bricks whose turn has not come, and topics that have changed since theirs.
   if (!c.path.empty()) {
     EXPECT_FALSE(c.seen.empty());
-    EXPECT_NE(std::ranges::find(c.untold, mapping::PieceKind::kTopic, [](const auto& w) { return w.key.kind; }),
-              c.untold.end());
+    EXPECT_NE(
+        std::ranges::find(c.untold, mapping::PieceKind::kTopic, [](const auto& w) { return w.key.kind; }),
+        c.untold.end());
   }
 }
 

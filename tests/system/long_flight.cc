@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Not a test: what an image costs a robot as its map grows. One agent flies the same stretch of reef again and
-// again, each time a stretch further on, so that pictures are real, rendered once, and cells are new.
+// Not a test: what an image costs a robot as its map grows. One agent flies the same stretch of reef again
+// and again, each time a stretch further on, so that pictures are real, rendered once, and cells are new.
 //
 //     build/bin/shoal_long_flight [IMAGES [CELL_SIZE_M [BUDGET [CHECKPOINT_DIR]]]]
 //
@@ -117,10 +117,10 @@ int run(int argc, char** argv) {
       rows.push_back(row);
       if (rows.size() % kImagesInARow == 0) print(rows, rows.size() - kImagesInARow);
       if (row.all_ms > 100)
-        std::printf("image %zu: words %.1f topics %.1f belief %.1f pictures %.1f publish %.1f save %.1f all %.1f\n",
-                    rows.size(), row.times.stages.words_ms, row.times.stages.topics_ms,
-                    row.times.stages.belief_ms, row.times.stages.pictures_ms, row.times.publish_ms,
-                    row.times.save_ms, row.all_ms);
+        std::printf(
+            "image %zu: words %.1f topics %.1f belief %.1f pictures %.1f publish %.1f save %.1f all %.1f\n",
+            rows.size(), row.times.stages.words_ms, row.times.stages.topics_ms, row.times.stages.belief_ms,
+            row.times.stages.pictures_ms, row.times.publish_ms, row.times.save_ms, row.all_ms);
     }
     row = {};
     began_ms = threadCpuMs();
