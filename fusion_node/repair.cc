@@ -72,9 +72,9 @@ const StateHoldings::Tree& StateHoldings::made(int32_t share) {
   if (tree.digest == digest) return tree;
   tree = {digest, {}, {}};
   std::vector<comms::Leaf> leaves;
-  state_.beliefs().visitOf(robot, [&](const mapping::Piece& piece) {
+  state_.beliefs().visitHashesOf(robot, [&](const mapping::Piece& piece, uint64_t hash) {
     const uint64_t key = nameOf(piece.key, piece.part).second;
-    leaves.push_back({key, versionOf(piece.version), contentHash(piece)});
+    leaves.push_back({key, versionOf(piece.version), hash});
     tree.pieces.emplace(key, std::pair(piece.key, piece.part));
   });
   tree.tree = comms::DigestTree(std::move(leaves));

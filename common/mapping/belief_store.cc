@@ -26,17 +26,17 @@ int64_t contentBytes(const PicturePart& part) { return sizeOf(part.layer, 1); }
 int64_t contentBytes(const SettingsPart&) { return 0; }
 int64_t contentBytes(const Edit&) { return 256; }  // names are short
 
-int64_t sumOf(const std::map<int32_t, Piece>& parts) {
-  int64_t bytes = 0;
-  for (const auto& [part, piece] : parts) bytes += heldBytes(piece);
-  return bytes;
-}
-
 }  // namespace
 
 int64_t heldBytes(const Piece& piece) {
   return kHeldBytesPerPart +
          std::visit([](const auto& content) { return contentBytes(content); }, piece.content);
+}
+
+int64_t BeliefStore::sumOf(const Parts& parts) {
+  int64_t bytes = 0;
+  for (const auto& [number, part] : parts) bytes += heldBytes(part.piece);
+  return bytes;
 }
 
 // Within what is set aside for it a robot has room always. Beyond, together with all others.
@@ -95,9 +95,10 @@ Applied BeliefStore::apply(const Piece& piece) {
   charge(sum->second, bytes);
   Slot& slot = found->second;
   auto& parts = piece.version == slot.version ? slot.parts : slot.pending[piece.version];
-  parts.emplace(piece.part, piece);
+  const uint64_t hash = contentHash(piece);
+  parts.emplace(piece.part, Part{piece, hash});
   if (piece.version == slot.version) {
-    sum->second.digest += contentHash(piece);
+    sum->second.digest += hash;
     noteChange(piece.key, slot);
     return Applied::kNew;
   }
@@ -118,10 +119,10 @@ std::optional<Applied> BeliefStore::compareToHeld(const Slot& slot, const Piece&
   const auto waiting = slot.pending.find(piece.version);
   if (piece.version != slot.version && waiting == slot.pending.end()) return std::nullopt;
   const auto& parts = piece.version == slot.version ? slot.parts : waiting->second;
-  if (!parts.empty() && parts.begin()->second.num_parts != piece.num_parts) return Applied::kConflict;
+  if (!parts.empty() && parts.begin()->second.piece.num_parts != piece.num_parts) return Applied::kConflict;
   const auto held = parts.find(piece.part);
   if (held == parts.end()) return std::nullopt;
-  return held->second == piece ? Applied::kDuplicate : Applied::kConflict;
+  return held->second.piece == piece ? Applied::kDuplicate : Applied::kConflict;
 }
 
 void BeliefStore::noteEpoch(world::RobotId robot, int32_t epoch) {
@@ -144,14 +145,14 @@ void BeliefStore::beginEpoch(world::RobotId robot, RobotSum& sum, int32_t epoch)
 // Part 0 of a newer version has come: it is what the slot now holds, and all that is older goes.
 void BeliefStore::promote(Slot& slot, world::Version version) {
   const auto newer = slot.pending.find(version);
-  RobotSum& sum = sums_.at(newer->second.begin()->second.key.robot);
-  for (const auto& [part, piece] : slot.parts) sum.digest -= contentHash(piece);
+  RobotSum& sum = sums_.at(newer->second.begin()->second.piece.key.robot);
+  for (const auto& [number, part] : slot.parts) sum.digest -= part.hash;
   int64_t gone = sumOf(slot.parts);
   for (auto older = slot.pending.begin(); older != newer; ++older) gone += sumOf(older->second);
   charge(sum, -gone);
   slot.version = version;
   slot.parts = std::move(newer->second);
-  for (const auto& [part, piece] : slot.parts) sum.digest += contentHash(piece);
+  for (const auto& [number, part] : slot.parts) sum.digest += part.hash;
   slot.pending.erase(slot.pending.begin(), slot.pending.upper_bound(version));
 }
 
@@ -171,7 +172,7 @@ const Piece* BeliefStore::find(const PieceKey& key, int32_t part) const {
   const auto slot = slots_.find(key);
   if (slot == slots_.end()) return nullptr;
   const auto held = slot->second.parts.find(part);
-  return held == slot->second.parts.end() ? nullptr : &held->second;
+  return held == slot->second.parts.end() ? nullptr : &held->second.piece;
 }
 
 int32_t BeliefStore::epochOf(world::RobotId robot) const {

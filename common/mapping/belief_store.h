@@ -56,7 +56,7 @@ class BeliefStore {
   template <typename Visitor>
   void visit(Visitor&& visitor) const {
     for (const auto& [key, slot] : slots_)
-      for (const auto& [part, piece] : slot.parts) visitor(piece);
+      for (const auto& [number, part] : slot.parts) visitor(part.piece);
   }
 
   /// The same of one robot, or of kOperators.
@@ -64,7 +64,15 @@ class BeliefStore {
   void visitOf(world::RobotId robot, Visitor&& visitor) const {
     for (auto at = slots_.lower_bound({robot, PieceKind{0}, {}});
          at != slots_.end() && at->first.robot == robot; ++at)
-      for (const auto& [part, piece] : at->second.parts) visitor(piece);
+      for (const auto& [number, part] : at->second.parts) visitor(part.piece);
+  }
+
+  /// The same with contentHash() of each, at no cost: visitor(piece, hash).
+  template <typename Visitor>
+  void visitHashesOf(world::RobotId robot, Visitor&& visitor) const {
+    for (auto at = slots_.lower_bound({robot, PieceKind{0}, {}});
+         at != slots_.end() && at->first.robot == robot; ++at)
+      for (const auto& [number, part] : at->second.parts) visitor(part.piece, part.hash);
   }
 
   /// The same of one key.
@@ -72,7 +80,7 @@ class BeliefStore {
   void visitOf(const PieceKey& key, Visitor&& visitor) const {
     const auto slot = slots_.find(key);
     if (slot == slots_.end()) return;
-    for (const auto& [part, piece] : slot->second.parts) visitor(piece);
+    for (const auto& [number, part] : slot->second.parts) visitor(part.piece);
   }
 
   /// The topics of all robots.
@@ -81,7 +89,7 @@ class BeliefStore {
     for (const auto& [robot, sum] : sums_) {
       for (auto at = slots_.lower_bound({robot, PieceKind::kTopic, kLowestIndex});
            at != slots_.end() && at->first.robot == robot && at->first.kind == PieceKind::kTopic; ++at)
-        for (const auto& [part, piece] : at->second.parts) visitor(piece);
+        for (const auto& [number, part] : at->second.parts) visitor(part.piece);
     }
   }
 
@@ -123,11 +131,16 @@ class BeliefStore {
  private:
   static constexpr std::array<int32_t, 3> kLowestIndex{INT32_MIN, INT32_MIN, INT32_MIN};
 
+  struct Part {
+    Piece piece;
+    uint64_t hash = 0;  // of its content
+  };
+  using Parts = std::map<int32_t, Part>;  // by number
   struct Slot {
-    world::Version version{-1, -1};                              // of the usable parts
-    uint64_t changed = 0;                                        // revision of their last change; 0 = none
-    std::map<int32_t, Piece> parts;                              // usable, by part number
-    std::map<world::Version, std::map<int32_t, Piece>> pending;  // newer, part 0 still lacking
+    world::Version version{-1, -1};           // of the usable parts
+    uint64_t changed = 0;                     // revision of their last change; 0 = none
+    Parts parts;                              // usable
+    std::map<world::Version, Parts> pending;  // newer, part 0 still lacking
   };
   struct RobotSum {
     uint64_t digest = 0;
@@ -137,6 +150,7 @@ class BeliefStore {
     bool full = false;
   };
   int64_t setAside() const { return limits_.max_bytes / 2 / std::max(limits_.max_robots, 1); }
+  static int64_t sumOf(const Parts& parts);
   bool hasRoom(const RobotSum& sum, int64_t more) const;
   void charge(RobotSum& sum, int64_t more);
   int64_t bytesReplacedBy(const Piece& piece) const;
