@@ -198,6 +198,7 @@ void Agent::fly() {
   publishAll();
   while (saving_.isRunning()) lookAtSave(true);
   save();
+  while (isHolding()) lookAtSave(true);  // who has landed has said all it has, if only to its queue
   if (stopRequested()) return;
   phase_ = wire::Phase::kLanded;
   spdlog::info("landed after {} observations: {} topics, {} cells, {:.1f} ms each", path_.size(),
@@ -238,9 +239,9 @@ void Agent::takeIn(const world::Observation& observation) {
   total_ms_ += took.count();
   const robot::StageTimes& t = times.stages;
   spdlog::debug(
-      "observation {}: {:.1f} ms; of CPU words {:.1f} ms, topics {:.1f} ms, belief {:.1f} ms, pictures "
-      "{:.1f} "
-      "ms, publish {:.1f} ms, save {:.1f} ms",
+      "observation {}: {:.1f} ms; of CPU words {:.1f}, topics {:.1f}, belief {:.1f}, pictures {:.1f}, "
+      "publish "
+      "{:.1f}, save {:.1f} ms",
       observation.number, took.count(), t.words_ms, t.topics_ms, t.belief_ms, t.pictures_ms, times.publish_ms,
       times.save_ms);
   if (options_.watch) options_.watch(times);

@@ -26,6 +26,7 @@ namespace {
 constexpr int32_t kImagesOfAStretch = 400;
 constexpr int32_t kStretchesInARow = 8;
 constexpr size_t kImagesInARow = 1000;  // of the table
+constexpr double kPauseMs = 50;
 
 // The whole of a small reef, and then the same beside it.
 class EndlessReef final : public world::ObservationSource {
@@ -93,8 +94,8 @@ void print(const std::vector<Row>& rows, size_t first) {
   column("save", [](const Row& r) { return r.times.save_ms; });
   column("all", [](const Row& r) { return r.all_ms; });
   size_t slow = 0;
-  for (size_t i = first; i < last; ++i) slow += rows[i].all_ms > 50;
-  std::printf(" %zu above 50\n", slow);
+  for (size_t i = first; i < last; ++i) slow += rows[i].all_ms > kPauseMs;
+  std::printf(" %zu above %.0f\n", slow, kPauseMs);
   std::fflush(stdout);
 }
 
@@ -116,7 +117,7 @@ int run(int argc, char** argv) {
     if (began_ms > 0) {
       rows.push_back(row);
       if (rows.size() % kImagesInARow == 0) print(rows, rows.size() - kImagesInARow);
-      if (row.all_ms > 100)
+      if (row.all_ms > kPauseMs)
         std::printf(
             "image %zu: words %.1f topics %.1f belief %.1f pictures %.1f publish %.1f save %.1f all %.1f\n",
             rows.size(), row.times.stages.words_ms, row.times.stages.topics_ms, row.times.stages.belief_ms,
