@@ -69,7 +69,8 @@ class EndlessReef final : public world::ObservationSource {
 
 struct Row {
   robot_agent::ImageTimes times;
-  double all_ms = 0;  // sending and listening included
+  double all_ms = 0;  // sending and listening included, of the second that follows
+  double image_ms() const { return times.stages.total() + times.publish_ms + times.save_ms; }
 };
 
 double at(std::vector<double> values, double part) {
@@ -92,6 +93,7 @@ void print(const std::vector<Row>& rows, size_t first) {
   column("pictures", [](const Row& r) { return r.times.stages.pictures_ms; });
   column("publish", [](const Row& r) { return r.times.publish_ms; });
   column("save", [](const Row& r) { return r.times.save_ms; });
+  column("image", [](const Row& r) { return r.image_ms(); });
   column("all", [](const Row& r) { return r.all_ms; });
   size_t slow = 0;
   for (size_t i = first; i < last; ++i) slow += rows[i].all_ms > kPauseMs;
