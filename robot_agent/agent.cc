@@ -226,7 +226,7 @@ void Agent::takeIn(const world::Observation& observation) {
   ImageTimes times{.stages = explorer_.lastTimes(), .num_cells = explorer_.numCells()};
   times.stages.belief_ms += threadCpuMs() - learnt_ms;
   const double believed_ms = threadCpuMs();
-  publish();
+  if (path_.size() >= kTurns) publish();  // what it makes of the first images will not last
   if (path_.size() % kTurns == 0) {
     publishPictures();
     sharpenWanted();
