@@ -149,11 +149,12 @@ int64_t Sender::backlogOf(std::span<const SendQueue::Next> waiting, size_t guess
   int64_t taken = 0;  // and in datagrams
   size_t end = 0;     // of the last trial
   bool has_gaps = false;
+  const bool is_long = guess >= 2 && waiting.size() > 2 * kBacklogTrials * guess;
   for (size_t trial = 0; trial < kBacklogTrials && end < waiting.size(); ++trial) {
     const size_t begin = std::max(end, trial * waiting.size() / kBacklogTrials);
     const auto rest = waiting.subspan(begin);
     has_gaps = has_gaps || begin > end;
-    if (has_gaps) {  // about as much as a datagram holds will do
+    if (has_gaps || is_long) {  // about as much as a datagram holds will do
       guess = std::max<size_t>(guess, 2);
       if (rest.size() < guess) break;  // not full: not like the others
       const auto some = rest.first(guess);

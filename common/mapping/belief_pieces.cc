@@ -41,7 +41,7 @@ class ByBrick {
 
  private:
   std::map<Brick, Value> values_;
-  std::map<Brick, Value>::iterator at_ = values_.end();
+  typename std::map<Brick, Value>::iterator at_ = values_.end();
 };
 
 BrickPart labelsOf(const std::vector<BelievedCell>& cells) {
