@@ -394,7 +394,7 @@ TEST(BeliefChangesTest, InTurnsEveryTopicAndSeenBrickIsToldOnceARound) {
       EXPECT_EQ(turn_of.try_emplace(piece.key, step % kTurns).first->second, step % kTurns);
       bricks += piece.key.kind == PieceKind::kBrick;
     }
-    EXPECT_EQ(bricks, 40u / kTurns);  // of a row evenly
+    EXPECT_EQ(bricks, 40u / kTurns);        // of a row evenly
     EXPECT_EQ(changes.seen().size(), 32u);  // the others wait for theirs
     seen_until = latestIn(b);
     ++b.version.observation;
