@@ -22,7 +22,7 @@ bool isInBrick(const world::CellIndex& cell, const std::array<int32_t, 3>& brick
   return brickOf(cell) == brick;
 }
 
-// A brick's cells by height, then place. A cell that several parts tell of (honest ones do not) is there
+// A brick's cells by cell. A cell that several parts tell of (honest ones do not) is there
 // once: the newest, the earlier part's among equals.
 std::vector<BrickCell> labelledCells(const BeliefStore& beliefs, world::RobotId robot,
                                      const std::array<int32_t, 3>& brick) {
@@ -31,7 +31,7 @@ std::vector<BrickCell> labelledCells(const BeliefStore& beliefs, world::RobotId 
     const auto& part = std::get<BrickPart>(piece.content).cells;
     cells.insert(cells.end(), part.begin(), part.end());
   });
-  const auto order = [](const BrickCell& c) { return std::tuple(c.cell.z, c.cell.x, c.cell.y, -c.seen.us); };
+  const auto order = [](const BrickCell& c) { return std::tuple(c.cell, -c.seen.us); };
   if (!std::ranges::is_sorted(cells, {}, order)) std::ranges::stable_sort(cells, {}, order);
   const auto same = [](const BrickCell& a, const BrickCell& b) { return a.cell == b.cell; };
   cells.erase(std::unique(cells.begin(), cells.end(), same), cells.end());
@@ -60,6 +60,8 @@ uint8_t placeOf(const world::CellIndex& cell) {
   return static_cast<uint8_t>((cell.x & (kTileEdge - 1)) * kTileEdge + (cell.y & (kTileEdge - 1)));
 }
 
+uint8_t heightOf(const world::CellIndex& cell) { return static_cast<uint8_t>(cell.z & (kTileEdge - 1)); }
+
 bool containsRobot(const std::vector<world::RobotId>& robots, world::RobotId robot) {
   return std::ranges::find(robots, robot) != robots.end();
 }
@@ -79,33 +81,41 @@ void giveNames(std::vector<LabelSummary>& rows, const Judgement& judgement,
 
 struct ReadTile {
   ReadTile(const TileIndex& at, const MapTile& what, const LabelTable& label) : index(at), tile(&what) {
-    for (const Voice& voice : what.voices()) labels.push_back(label.of(voice));
+    for (const Utterance& said : what.utterances()) labels.push_back(label.of(said.voice));
   }
   TileIndex index;
   const MapTile* tile;
-  std::vector<world::GlobalLabel> labels;  // by voice
+  std::vector<world::GlobalLabel> labels;  // by utterance
 };
+
+// The cells of one column of a tile, upwards.
+void readPlace(const ReadTile& from, int32_t place, std::vector<GlobalCell>& cells) {
+  const auto& [index, tile, labels] = from;
+  const size_t num_before = cells.size();
+  for (size_t s = 0; s < tile->numSheets(); ++s) {
+    MapTile::Newest cell;
+    if (!tile->read(s, static_cast<size_t>(place), cell)) continue;
+    const Utterance& said = tile->utterances()[cell.utterance];
+    cells.push_back({{index.x * kTileEdge + place / kTileEdge, index.y * kTileEdge + place % kTileEdge,
+                      index.z * kTileEdge + cell.height},
+                     labels[cell.utterance],
+                     said.voice.first,
+                     said.seen,
+                     static_cast<float>(cell.steps) / kCertaintySteps});
+  }
+  if (cells.size() > num_before + 1)
+    std::ranges::sort(cells.begin() + static_cast<std::ptrdiff_t>(num_before), cells.end(), {},
+                      &GlobalCell::cell);
+}
 
 // Cells ascend by x, y, z. Tiles of one x, ascending by y, then z: each of their sixteen columns of x is gone
 // through in that order.
 void readRow(const std::vector<ReadTile>& row, std::vector<GlobalCell>& cells) {
-  for (size_t x = 0; x < kTileEdge; ++x) {
+  for (int32_t x = 0; x < kTileEdge; ++x) {
     for (size_t from = 0, to = 0; from < row.size(); from = to) {
       while (to < row.size() && row[to].index.y == row[from].index.y) ++to;
-      for (size_t i = x * kTileEdge; i < (x + 1) * kTileEdge; ++i) {
-        for (size_t r = from; r < to; ++r) {
-          const auto& [index, tile, labels] = row[r];
-          const TileColumns& newest = tile->newest();
-          if (newest.time[i] == 0) continue;
-          const uint16_t voice = newest.voice[i];
-          cells.push_back({{index.x * kTileEdge + static_cast<int32_t>(x),
-                            index.y * kTileEdge + static_cast<int32_t>(i % kTileEdge), index.z},
-                           labels[voice],
-                           tile->voices()[voice].first,
-                           tile->times()[newest.time[i] - 1u],
-                           static_cast<float>(newest.certainty[i]) / kCertaintySteps});
-        }
-      }
+      for (int32_t place = x * kTileEdge; place < (x + 1) * kTileEdge; ++place)
+        for (size_t r = from; r < to; ++r) readPlace(row[r], place, cells);
     }
   }
 }
@@ -167,44 +177,29 @@ void FusedMap::readBrick(const BeliefStore& beliefs, const RobotBrick& at, std::
   beliefs.visitOf(PieceKey{robot, PieceKind::kBrick, brick}, [&](const Piece& piece) {
     for (const BrickCell& c : std::get<BrickPart>(piece.content).cells) {
       SHOAL_DEMAND(isInBrick(c.cell, brick));
-      auto tally = std::ranges::find(spoken.cells, c.topic, [](const auto& t) { return t.first; });
-      if (tally == spoken.cells.end()) tally = spoken.cells.insert(tally, {c.topic, 0});
+      auto tally = std::ranges::find(spoken, c.topic, [](const auto& t) { return t.first; });
+      if (tally == spoken.end()) tally = spoken.insert(tally, {c.topic, 0});
       ++tally->second;
     }
   });
-  const std::vector<BrickCell> cells = labelledCells(beliefs, robot, brick);
-  const std::vector<CertaintyCell> certain = certainties(beliefs, robot, brick);
-  std::vector<TileCell> said;
-  for (size_t i = 0; i < cells.size();) {
-    const int32_t z = cells[i].cell.z;
-    said.clear();
-    for (; i < cells.size() && cells[i].cell.z == z; ++i) {
-      said.push_back(
-          {placeOf(cells[i].cell), stepsOf(certain, cells[i].cell), cells[i].topic, cells[i].seen});
-    }
-    say(robot, {brick[0], brick[1], z}, said, touched);
-    spoken.heights = static_cast<uint16_t>(spoken.heights | 1u << (z - brick[2] * kBrickEdge));
-  }
-
   Spoken& before = spoken_[at];
-  for (int32_t k = 0; k < kBrickEdge; ++k) {
-    const bool is_gone = (before.heights >> k & 1) != 0 && (spoken.heights >> k & 1) == 0;
-    if (is_gone) say(robot, {brick[0], brick[1], brick[2] * kBrickEdge + k}, {}, touched);
+  if (!before.empty() || !spoken.empty()) {
+    const std::vector<CertaintyCell> certain = certainties(beliefs, robot, brick);
+    std::vector<TileCell> said;
+    for (const BrickCell& c : labelledCells(beliefs, robot, brick))
+      said.push_back({placeOf(c.cell), heightOf(c.cell), stepsOf(certain, c.cell), c.topic, c.seen});
+    const TileIndex index{brick[0], brick[1], brick[2]};
+    tiles_[index].set(robot, said);
+    touched.insert(index);
   }
   countHeard(robot, before, -1);
   countHeard(robot, spoken, +1);
   before = std::move(spoken);
-  if (before.cells.empty()) spoken_.erase(at);
-}
-
-void FusedMap::say(world::RobotId robot, const TileIndex& index, std::span<const TileCell> cells,
-                   std::set<TileIndex>& touched) {
-  tiles_[index].set(robot, cells);
-  touched.insert(index);
+  if (before.empty()) spoken_.erase(at);
 }
 
 void FusedMap::countHeard(world::RobotId robot, const Spoken& spoken, int64_t sign) {
-  for (const auto& [topic, cells] : spoken.cells) {
+  for (const auto& [topic, cells] : spoken) {
     const auto counted = heard_cells_.emplace(Voice{robot, topic}, 0).first;
     counted->second += sign * cells;
     if (counted->second == 0) heard_cells_.erase(counted);

@@ -51,11 +51,8 @@ class FusedMap {
  private:
   using BrickIndex = std::array<int32_t, 3>;
   using RobotBrick = std::pair<world::RobotId, BrickIndex>;
-  // What a robot says in a brick: the heights of its tiles there, as bits, and its cells by topic.
-  struct Spoken {
-    uint16_t heights = 0;
-    std::vector<std::pair<world::TopicId, int64_t>> cells;
-  };
+  // A robot's cells in a brick by topic.
+  using Spoken = std::vector<std::pair<world::TopicId, int64_t>>;
   // What a voice shows in all tiles.
   struct Shown {
     int64_t cells = 0;
@@ -76,8 +73,6 @@ class FusedMap {
 
   std::set<RobotBrick> changes(const BeliefStore& beliefs);
   void readBrick(const BeliefStore& beliefs, const RobotBrick& at, std::set<TileIndex>& touched);
-  void say(world::RobotId robot, const TileIndex& index, std::span<const TileCell> cells,
-           std::set<TileIndex>& touched);
   void exclude(const std::set<world::RobotId>& robots, std::set<TileIndex>& touched);
   void foldTile(const TileIndex& index, MapTile& tile);
   void countHeard(world::RobotId robot, const Spoken& spoken, int64_t sign);
@@ -88,7 +83,7 @@ class FusedMap {
 
   uint64_t revision_ = 0;
   std::map<world::RobotId, int32_t> epochs_;
-  std::map<RobotBrick, Spoken> spoken_;
+  std::map<RobotBrick, Spoken> spoken_;   // none empty
   std::map<Voice, int64_t> heard_cells_;  // of every robot's own map
   std::set<world::RobotId> excluded_;
   std::map<TileIndex, MapTile> tiles_;

@@ -2,9 +2,8 @@
 #include "shoal/mapping/map_tile.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
-#include <limits>
-#include <stdexcept>
 
 #include "shoal/mapping/global_map.h"
 #include "shoal/mapping/piece.h"
@@ -12,139 +11,249 @@
 namespace shoal::mapping {
 namespace {
 
-template <class T>
-uint16_t placeOf(const std::vector<T>& ascending, const T& value) {
-  return static_cast<uint16_t>(std::ranges::lower_bound(ascending, value) - ascending.begin());
-}
+constexpr uint8_t kFree = 0xFF;  // height of a place of a sheet that nobody says anything of
+using Heights = std::array<uint8_t, kTilePlaces>;
 
-template <class T>
-void makeAscending(std::vector<T>& values) {
+void makeAscending(std::vector<Utterance>& values) {
   std::ranges::sort(values);
   values.erase(std::unique(values.begin(), values.end()), values.end());
 }
 
+uint32_t numberOf(const std::vector<Utterance>& ascending, const Utterance& utterance) {
+  return static_cast<uint32_t>(std::ranges::lower_bound(ascending, utterance) - ascending.begin());
+}
+
+// The first sheet that has this cell, or room for it.
+uint16_t sheetFor(uint8_t place, uint8_t height, std::vector<Heights>& sheets) {
+  uint16_t s = 0;
+  while (s < sheets.size() && sheets[s][place] != kFree && sheets[s][place] != height) ++s;
+  if (s == sheets.size()) sheets.emplace_back().fill(kFree);
+  sheets[s][place] = height;
+  return s;
+}
+
+uint32_t loadRank(const std::byte* ranks, size_t i, size_t rank) {
+  const auto load = [&]<class T>(T value) {
+    std::memcpy(&value, ranks + i * sizeof(T), sizeof(T));
+    return uint32_t{value};
+  };
+  return rank == 1 ? load(uint8_t{}) : rank == 2 ? load(uint16_t{}) : load(uint32_t{});
+}
+
+void storeRank(std::byte* ranks, size_t i, size_t rank, uint32_t value) {
+  const auto store = [&]<class T>(T narrow) { std::memcpy(ranks + i * sizeof(T), &narrow, sizeof(T)); };
+  if (rank == 1) return store(static_cast<uint8_t>(value));
+  if (rank == 2) return store(static_cast<uint16_t>(value));
+  store(value);
+}
+
+template <class Rank>
+void labelPlaces(const std::byte* ranks, const world::GlobalLabel* of, world::GlobalLabel* labels) {
+  std::array<Rank, kTilePlaces> rank;
+  std::memcpy(rank.data(), ranks, sizeof rank);
+  for (size_t i = 0; i < kTilePlaces; ++i) labels[i] = of[rank[i]];
+}
+
 }  // namespace
 
+struct MapTile::Said {
+  world::RobotId robot{};
+  uint8_t place = 0, height = 0, steps = 0;
+  uint32_t utterance = 0;
+};
+
+std::span<const Utterance> MapTile::utterances() const {
+  return {reinterpret_cast<const Utterance*>(memory_.data()), num_utterances_};
+}
+
+std::span<const MapTile::Layer> MapTile::layers() const {
+  return {reinterpret_cast<const Layer*>(memory_.data() + num_utterances_ * sizeof(Utterance)), num_layers_};
+}
+
+size_t MapTile::sheetAt(size_t s) const {
+  return num_utterances_ * sizeof(Utterance) + num_layers_ * sizeof(Layer) + s * kTilePlaces * (rank_ + 2u);
+}
+
 bool MapTile::holds(world::RobotId robot) const {
-  return std::ranges::binary_search(layers_, robot, {}, &Layer::robot);
+  return std::ranges::binary_search(layers(), robot, {}, &Layer::robot);
 }
 
 void MapTile::set(world::RobotId robot, std::span<const TileCell> cells) {
-  auto layer = std::ranges::lower_bound(layers_, robot, {}, &Layer::robot);
-  std::ptrdiff_t first = 0;  // of its rows
-  for (auto before = layers_.begin(); before != layer; ++before) first += std::popcount(before->rows);
-  if (layer != layers_.end() && layer->robot == robot) {
-    said_.erase(said_.begin() + first, said_.begin() + first + std::popcount(layer->rows));
-    layer = layers_.erase(layer);
-  }
-  if (cells.empty()) return;
-  if (layers_.size() * kTileCells >= std::numeric_limits<uint16_t>::max() - kTileCells) {
-    throw std::length_error("a tile of the map has room for 255 robots");
-  }
-  renumber(robot, cells);
-  std::array<TileRow, kTileEdge> own;
-  Layer said{robot, 0};
-  for (const TileCell& c : cells) {
-    const size_t row = c.place / size_t{kTileEdge}, place = c.place % size_t{kTileEdge};
-    own[row].time[place] = static_cast<uint16_t>(placeOf(times_, c.seen) + 1);
-    own[row].voice[place] = placeOf(voices_, Voice{robot, c.topic});
-    own[row].certainty[place] = c.steps;
-    said.rows = static_cast<uint16_t>(said.rows | 1u << row);
-  }
-  layers_.insert(layer, said);
-  for (size_t row = 0; row < own.size(); ++row)
-    if ((said.rows >> row & 1) != 0) said_.insert(said_.begin() + first++, own[row]);
+  std::vector<Said> said = saidByOthers(robot);
+  std::vector<char> is_used(num_utterances_, 0);
+  for (const Said& s : said) is_used[s.utterance] = 1;
+  std::vector<Utterance> now;
+  for (size_t u = 0; u < num_utterances_; ++u)
+    if (is_used[u]) now.push_back(utterances()[u]);
+  for (const TileCell& c : cells) now.push_back({c.seen, {robot, c.topic}});
+  makeAscending(now);
+  std::vector<uint32_t> number(num_utterances_);
+  for (size_t u = 0; u < num_utterances_; ++u) number[u] = numberOf(now, utterances()[u]);
+  for (Said& s : said) s.utterance = number[s.utterance];
+
+  std::vector<Said> own;
+  own.reserve(cells.size());
+  for (const TileCell& c : cells)
+    own.push_back({robot, c.place, c.height, c.steps, numberOf(now, {c.seen, {robot, c.topic}})});
+  said.insert(std::ranges::lower_bound(said, robot, {}, &Said::robot), own.begin(), own.end());
+  build(said, now);
 }
 
-// Numbers the times and voices that the layers use and that the new cells bring, and no others.
-void MapTile::renumber(world::RobotId robot, std::span<const TileCell> cells) {
-  std::vector<char> time_used(times_.size() + 1, 0), voice_used(voices_.size() + 1, 0);
-  for (const TileRow& row : said_) {
-    for (size_t i = 0; i < kTileEdge; ++i) {
-      const bool said = row.time[i] != 0;
-      time_used[row.time[i]] = 1;
-      voice_used[said ? row.voice[i] : voices_.size()] = 1;
+// In the order of their layers.
+std::vector<MapTile::Said> MapTile::saidByOthers(world::RobotId robot) const {
+  std::vector<Said> said;
+  const std::byte* ranks = memory_.data() + sheetAt(num_sheets_);
+  for (const Layer& layer : layers()) {
+    const auto* const heights =
+        reinterpret_cast<const uint8_t*>(memory_.data() + sheetAt(layer.sheet)) + kTilePlaces * (rank_ + 1u);
+    const size_t num_places = static_cast<size_t>(std::popcount(layer.rows)) * kTileEdge;
+    const std::byte* const certainty = ranks + num_places * rank_;
+    size_t i = 0;
+    for (unsigned rows = layer.rows; rows != 0 && layer.robot != robot; rows &= rows - 1) {
+      const auto first = static_cast<size_t>(std::countr_zero(rows)) * kTileEdge;
+      for (size_t place = first; place < first + kTileEdge; ++place, ++i) {
+        const uint32_t rank = loadRank(ranks, i, rank_);
+        if (rank == 0) continue;
+        said.push_back({layer.robot, static_cast<uint8_t>(place), heights[place],
+                        static_cast<uint8_t>(certainty[i]), rank - 1});
+      }
     }
+    ranks = certainty + num_places;
   }
-  std::vector<world::Timestamp> times;
-  std::vector<Voice> voices;
-  for (size_t t = 0; t < times_.size(); ++t)
-    if (time_used[t + 1]) times.push_back(times_[t]);
-  for (size_t v = 0; v < voices_.size(); ++v)
-    if (voice_used[v]) voices.push_back(voices_[v]);
-  for (const TileCell& c : cells) {
-    times.push_back(c.seen);
-    voices.emplace_back(robot, c.topic);
-  }
-  makeAscending(times);
-  makeAscending(voices);
+  return said;
+}
 
-  std::vector<uint16_t> time_now(times_.size() + 1, 0), voice_now(voices_.size() + 1, 0);
-  for (size_t t = 0; t < times_.size(); ++t)
-    time_now[t + 1] = static_cast<uint16_t>(placeOf(times, times_[t]) + 1);
-  for (size_t v = 0; v < voices_.size(); ++v) voice_now[v] = placeOf(voices, voices_[v]);
-  for (TileRow& row : said_) {
-    for (size_t i = 0; i < kTileEdge; ++i) {
-      if (row.time[i] == 0) continue;
-      row.time[i] = time_now[row.time[i]];
-      row.voice[i] = voice_now[row.voice[i]];
+// Lays out anew what robots say, ascending by robot.
+void MapTile::build(const std::vector<Said>& said, const std::vector<Utterance>& utterances) {
+  std::vector<Heights> sheets;
+  std::vector<uint16_t> sheet_of;
+  std::vector<Layer> layers;
+  std::vector<size_t> layer_of;  // by sheet, of the robot at hand
+  size_t num_rows = 0;
+  for (size_t i = 0; i < said.size(); ++i) {
+    const uint16_t sheet = sheet_of.emplace_back(sheetFor(said[i].place, said[i].height, sheets));
+    if (i == 0 || said[i - 1].robot != said[i].robot) layer_of.clear();
+    layer_of.resize(std::max(layer_of.size(), sheet + size_t{1}), SIZE_MAX);
+    if (layer_of[sheet] == SIZE_MAX) {
+      layer_of[sheet] = layers.size();
+      layers.push_back({said[i].robot, sheet, 0});
     }
+    uint16_t& rows = layers[layer_of[sheet]].rows;
+    const auto row = static_cast<uint16_t>(1u << said[i].place / kTileEdge);
+    num_rows += (rows & row) == 0 ? 1 : 0;
+    rows = static_cast<uint16_t>(rows | row);
   }
-  times_ = std::move(times);
-  voices_ = std::move(voices);
+
+  num_utterances_ = static_cast<uint32_t>(utterances.size());
+  num_layers_ = static_cast<uint32_t>(layers.size());
+  num_sheets_ = static_cast<uint16_t>(sheets.size());
+  rank_ = num_utterances_ <= UINT8_MAX ? 1 : num_utterances_ <= UINT16_MAX ? 2 : 4;
+  const size_t size = sheetAt(num_sheets_) + num_rows * kTileEdge * (rank_ + 1u);
+  memory_ = size == 0 ? TileMemory() : TileMemory(size);
+  std::ranges::copy(utterances, reinterpret_cast<Utterance*>(memory_.data()));
+  std::ranges::copy(layers, reinterpret_cast<Layer*>(memory_.data() + num_utterances_ * sizeof(Utterance)));
+  for (size_t s = 0; s < sheets.size(); ++s) {
+    std::memcpy(memory_.data() + sheetAt(s) + kTilePlaces * (rank_ + 1u), sheets[s].data(), kTilePlaces);
+  }
+  std::byte* ranks = memory_.data() + sheetAt(num_sheets_);
+  for (size_t i = 0, l = 0; l < layers.size();) {
+    // A robot's cells, and its layers.
+    size_t end = i, end_layer = l;
+    while (end < said.size() && said[end].robot == said[i].robot) ++end;
+    std::vector<std::byte*> ranks_of(sheets.size());
+    std::vector<uint16_t> rows_of(sheets.size());
+    for (; end_layer < layers.size() && layers[end_layer].robot == said[i].robot; ++end_layer) {
+      const auto& [_, sheet, rows] = layers[end_layer];
+      ranks_of[sheet] = ranks;
+      rows_of[sheet] = rows;
+      ranks += static_cast<size_t>(std::popcount(rows)) * kTileEdge * (rank_ + 1u);
+    }
+    for (; i < end; ++i) {
+      const unsigned rows = rows_of[sheet_of[i]], row = said[i].place / unsigned{kTileEdge};
+      const auto at = static_cast<size_t>(std::popcount(rows & ((1u << row) - 1u))) * kTileEdge +
+                      said[i].place % size_t{kTileEdge};
+      std::byte* const own = ranks_of[sheet_of[i]];
+      storeRank(own, at, rank_, said[i].utterance + 1);
+      own[static_cast<size_t>(std::popcount(rows)) * kTileEdge * rank_ + at] = std::byte{said[i].steps};
+    }
+    l = end_layer;
+  }
 }
 
 void MapTile::fold(const std::set<world::RobotId>& excluded) {
-  const unsigned before = shown_;
-  const TileRow* said = said_.data();
-  shown_ = 0;
-  for (const Layer& layer : layers_) {
-    if (excluded.empty() || !excluded.contains(layer.robot))
-      shown_ = takeNewer(said, layer.rows, newest_, shown_);
-    said += std::popcount(layer.rows);
+  uint32_t begun = 0;
+  const std::byte* said = memory_.data() + sheetAt(num_sheets_);
+  for (const Layer& layer : layers()) {
+    if (excluded.empty() || !excluded.contains(layer.robot)) {
+      const bool is_first = (begun >> layer.sheet & 1) == 0;
+      takeNewer(said, layer.rows, rank_, memory_.data() + sheetAt(layer.sheet), is_first);
+      begun |= 1u << layer.sheet;
+    }
+    said += static_cast<size_t>(std::popcount(layer.rows)) * kTileEdge * (rank_ + 1u);
   }
-  for (unsigned gone = before & ~unsigned{shown_}; gone != 0; gone &= gone - 1) {
-    const auto row = std::countr_zero(gone) * kTileEdge;
-    std::fill_n(newest_.time.begin() + row, kTileEdge, uint16_t{0});
-    std::fill_n(newest_.voice.begin() + row, kTileEdge, uint16_t{0});
-    std::fill_n(newest_.certainty.begin() + row, kTileEdge, uint8_t{0});
-  }
+  for (size_t s = 0; s < num_sheets_; ++s)
+    if ((begun >> s & 1) == 0) std::memset(memory_.data() + sheetAt(s), 0, kTilePlaces * (rank_ + 1u));
 }
 
 void MapTile::prefetch() const {
-  constexpr size_t kLine = 64;
-  __builtin_prefetch(layers_.data());
-  const auto* const said = reinterpret_cast<const char*>(said_.data());
-  for (size_t at = 0; at < said_.size() * sizeof(TileRow); at += kLine) __builtin_prefetch(said + at);
-  for (unsigned rows = shown_; rows != 0; rows &= rows - 1) {
-    const auto first = static_cast<size_t>(std::countr_zero(rows)) * kTileEdge;
-    __builtin_prefetch(&newest_.time[first], 1);
-    __builtin_prefetch(&newest_.voice[first], 1);
-    __builtin_prefetch(&newest_.certainty[first], 1);
+  for (size_t at = 0; at < memory_.size(); at += TileMemory::kLine) __builtin_prefetch(memory_.data() + at);
+}
+
+bool MapTile::read(size_t sheet, size_t place, Newest& cell) const {
+  const std::byte* const ranks = memory_.data() + sheetAt(sheet);
+  const uint32_t rank = loadRank(ranks, place, rank_);
+  if (rank == 0) return false;
+  cell.utterance = rank - 1;
+  cell.steps = static_cast<uint8_t>(ranks[kTilePlaces * rank_ + place]);
+  cell.height = static_cast<uint8_t>(ranks[kTilePlaces * (rank_ + 1u) + place]);
+  return true;
+}
+
+std::span<const std::byte> MapTile::shown(size_t sheet) const {
+  return {memory_.data() + sheetAt(sheet), kTilePlaces * (rank_ + 1u)};
+}
+
+void MapTile::label(const LabelTable& table, world::GlobalLabel nothing, std::vector<world::GlobalLabel>& of,
+                    world::GlobalLabel* labels) const {
+  of.resize(num_utterances_ + size_t{1});
+  of[0] = nothing;
+  for (size_t u = 0; u < num_utterances_; ++u) of[u + 1] = table.of(utterances()[u].voice);
+  for (size_t s = 0; s < num_sheets_; ++s, labels += kTilePlaces) {
+    const std::byte* const ranks = memory_.data() + sheetAt(s);
+    if (rank_ == 1) labelPlaces<uint8_t>(ranks, of.data(), labels);
+    if (rank_ == 2) labelPlaces<uint16_t>(ranks, of.data(), labels);
+    if (rank_ == 4) labelPlaces<uint32_t>(ranks, of.data(), labels);
   }
 }
 
 void MapTile::count(const TileIndex& index) {
-  std::vector<Tally> tallies(voices_.size());
-  std::vector<uint16_t> first(voices_.size(), std::numeric_limits<uint16_t>::max());
-  for (size_t i = 0; i < kTileCells; ++i) {
-    const uint16_t time = (shown_ >> i / kTileEdge & 1) != 0 ? newest_.time[i] : uint16_t{0};
-    if (time == 0) continue;
-    const uint16_t voice = newest_.voice[i];
-    Tally& tally = tallies[voice];
-    ++tally.cells;
-    first[voice] = std::min(first[voice], time);
-    tally.hash += cellHash({index.x * kTileEdge + static_cast<int32_t>(i) / kTileEdge,
-                            index.y * kTileEdge + static_cast<int32_t>(i) % kTileEdge, index.z},
-                           voices_[voice].first, times_[time - 1u],
-                           static_cast<float>(newest_.certainty[i]) / kCertaintySteps);
+  struct Sum {
+    int64_t cells = 0;
+    uint64_t hash = 0;
+  };
+  std::vector<Sum> sums(num_utterances_);
+  for (size_t s = 0; s < num_sheets_; ++s) {
+    for (size_t place = 0; place < kTilePlaces; ++place) {
+      Newest cell;
+      if (!read(s, place, cell)) continue;
+      const Utterance& said = utterances()[cell.utterance];
+      Sum& sum = sums[cell.utterance];
+      ++sum.cells;
+      sum.hash += cellHash(
+          {index.x * kTileEdge + static_cast<int32_t>(place) / kTileEdge,
+           index.y * kTileEdge + static_cast<int32_t>(place) % kTileEdge, index.z * kTileEdge + cell.height},
+          said.voice.first, said.seen, static_cast<float>(cell.steps) / kCertaintySteps);
+    }
   }
   tallies_.clear();
-  for (size_t v = 0; v < tallies.size(); ++v) {
-    if (tallies[v].cells == 0) continue;
-    tallies[v].voice = voices_[v];
-    tallies[v].first_seen = times_[first[v] - 1u];
-    tallies_.push_back(tallies[v]);
+  for (size_t u = 0; u < num_utterances_; ++u) {  // the earliest first
+    if (sums[u].cells == 0) continue;
+    const Utterance& said = utterances()[u];
+    auto tally = std::ranges::lower_bound(tallies_, said.voice, {}, &Tally::voice);
+    if (tally == tallies_.end() || tally->voice != said.voice)
+      tally = tallies_.insert(tally, {said.voice, 0, said.seen, 0});
+    tally->cells += sums[u].cells;
+    tally->hash += sums[u].hash;
   }
 }
 

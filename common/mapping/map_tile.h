@@ -9,11 +9,12 @@
 
 #include "shoal/mapping/label_table.h"
 #include "shoal/mapping/newest_wins.h"
+#include "shoal/mapping/tile_memory.h"
 #include "shoal/world/ids.h"
 
 namespace shoal::mapping {
 
-/// Names a tile: its column of bricks, and its height as the z of its cells.
+/// Names a tile: its cells divided by kTileEdge, rounded down.
 struct TileIndex {
   int32_t x = 0, y = 0, z = 0;
   auto operator<=>(const TileIndex&) const = default;
@@ -21,18 +22,29 @@ struct TileIndex {
 
 /// What one robot says of one cell of a tile.
 struct TileCell {
-  uint8_t place = 0;  ///< see TileColumns
-  uint8_t steps = 0;  ///< certainty
+  uint8_t place = 0;   ///< of its column; see kTilePlaces
+  uint8_t height = 0;  ///< z mod kTileEdge
+  uint8_t steps = 0;   ///< certainty
   world::TopicId topic{};
   world::Timestamp seen;
 };
 
+/// "This robot saw this topic then." Cells that say the same share one. Of two the greater is the newer.
+struct Utterance {
+  world::Timestamp seen;
+  Voice voice;
+  auto operator<=>(const Utterance&) const = default;
+};
+
 /// A tile of the fused map: what every robot says of it, side by side, and of each cell the newest.
 ///
-/// Times and voices are numbered within the tile, times in their order. So a cell takes five bytes, whatever
-/// times and robots there are, and labels are not in it: a new matching leaves tiles as they are. Of a robot
-/// only the rows of sixteen cells are held in which it says something: of a surface in 3-D a tile sees a
-/// strip.
+/// Its cells lie in sheets. A sheet has one cell, of whatever height, in each of its 256 columns: a surface,
+/// rough or flat, is one sheet, and what overhangs it goes into the next. All robots share the heights.
+/// Utterances are numbered within the tile, the newest last, so that the newest of a cell is the greatest
+/// number: a cell takes two bytes of every robot (three in tiles with more than 255 utterances), whatever
+/// times, robots and topics there are. Labels are not in it: a new matching leaves tiles as they are. Of a
+/// robot only the rows of sixteen columns are held in which it says something. All lies in one piece of
+/// memory.
 class MapTile {
  public:
   /// What a voice shows in this tile after fold().
@@ -43,15 +55,22 @@ class MapTile {
     uint64_t hash = 0;            ///< sum over them of cellHash() (global_map.h)
   };
 
-  /// Lets `robot` say these cells, each place once, and nothing else. None: it says nothing here.
-  /// Cost: O(rows that robots say something of). @throws std::length_error for more than 255 robots.
+  /// A cell as fold() has left it.
+  struct Newest {
+    uint8_t height = 0;
+    uint8_t steps = 0;
+    uint32_t utterance = 0;  ///< place in utterances()
+  };
+
+  /// Lets `robot` say these cells, each once, and nothing else. None: it says nothing here.
+  /// Cost: O(cells that robots say something of).
   void set(world::RobotId robot, std::span<const TileCell> cells);
 
   bool holds(world::RobotId robot) const;
-  bool isEmpty() const { return layers_.empty(); }
+  bool isEmpty() const { return num_layers_ == 0; }
 
   /// Chooses the newest of every cell anew, the higher robot number among equals, as if the excluded robots
-  /// had said nothing. Cost: O(rows that robots say something of), a vector each.
+  /// had said nothing. Cost: O(rows that robots say something of), a few vectors each.
   void fold(const std::set<world::RobotId>& excluded);
 
   /// Has a core fetch what fold() will read, while it still folds tiles before. Changes nothing.
@@ -60,27 +79,46 @@ class MapTile {
   /// Counts what fold() has chosen. `index` is where the tile lies.
   void count(const TileIndex& index);
 
-  /// The outcome of fold(): read with times() and voices().
-  const TileColumns& newest() const { return newest_; }
-  uint16_t rowsShown() const { return shown_; }  ///< bit r: row r of newest() may hold a cell; no other does
-  const std::vector<world::Timestamp>& times() const { return times_; }  ///< of rank 1, 2, ..: ascending
-  const std::vector<Voice>& voices() const { return voices_; }           ///< by number: ascending
+  /// @name The outcome of fold(). @{
+  std::span<const Utterance> utterances() const;  ///< ascending
+  size_t numSheets() const { return num_sheets_; }
+  /// @returns false where nothing is said.
+  bool read(size_t sheet, size_t place, Newest& cell) const;
+  /// The number of what is said of every place, from 1, 0 where nothing is said, in so many bytes as the
+  /// tile's numbers need; then the bytes of certainty.
+  std::span<const std::byte> shown(size_t sheet) const;
+  /// The label of every place of every sheet, one sheet after the other.
+  /// @param nothing  stands where nothing is said.
+  /// @param of       by utterance: scratch.
+  /// @param labels   numSheets() x kTilePlaces.
+  void label(const LabelTable& table, world::GlobalLabel nothing, std::vector<world::GlobalLabel>& of,
+             world::GlobalLabel* labels) const;
+  /// @}
+
   /// The outcome of count(), ascending by voice.
   const std::vector<Tally>& tallies() const { return tallies_; }
+  /// Memory held, this object left out.
+  size_t bytes() const { return memory_.size() + tallies_.capacity() * sizeof(Tally); }
 
  private:
-  struct Layer {
+  struct Layer {  // what a robot says in a sheet
     world::RobotId robot{};
+    uint16_t sheet = 0;
     uint16_t rows = 0;  // bit r: it says something of row r
   };
-  void renumber(world::RobotId robot, std::span<const TileCell> cells);
+  struct Said;  // a cell, on the way into the tile or out of it
 
-  std::vector<Layer> layers_;  // ascending by robot
-  std::vector<TileRow> said_;  // their rows, one layer after the other
-  TileColumns newest_;
-  uint16_t shown_ = 0;
-  std::vector<world::Timestamp> times_;
-  std::vector<Voice> voices_;
+  std::vector<Said> saidByOthers(world::RobotId robot) const;
+  void build(const std::vector<Said>& said, const std::vector<Utterance>& utterances);
+
+  // In this order, in memory_: utterances, layers; of each sheet ranks, certainties, heights; of each layer
+  // its rows' ranks and certainties.
+  std::span<const Layer> layers() const;
+  size_t sheetAt(size_t sheet) const;
+
+  TileMemory memory_;
+  uint32_t num_utterances_ = 0, num_layers_ = 0;
+  uint16_t num_sheets_ = 0, rank_ = 1;  // bytes in a rank
   std::vector<Tally> tallies_;
 };
 

@@ -5,6 +5,7 @@
 // "cold" on fresh memory, "warm" in place: into what an earlier merge has left.
 #include <benchmark/benchmark.h>
 
+#include <malloc.h>
 #include <sys/wait.h>
 
 #include <bit>
@@ -181,14 +182,21 @@ void OctoMapTrees(benchmark::State& state, bool relief, bool warm) {
 }
 #endif
 
+// Of the heap.
+size_t heldBytes() {
+  const struct mallinfo2 heap = mallinfo2();
+  return heap.uordblks + heap.hblkhd;
+}
+
 // The tiles that all robots have filled, ready to be folded.
 std::map<TileIndex, MapTile> tilesOfAll(bool relief) {
   std::map<TileIndex, MapTile> tiles;
   for (int32_t r = 0; r < kRobots; ++r) {
     std::map<TileIndex, std::vector<TileCell>> said;
     eachCell(r, relief, kWindow, [&](const CellIndex& c, TopicId topic, world::Timestamp seen) {
-      said[{c.x >> 4, c.y >> 4, c.z}].push_back(
-          {static_cast<uint8_t>((c.x & 15) * kTileEdge + (c.y & 15)), 40, topic, seen});
+      said[{c.x >> 4, c.y >> 4, c.z >> 4}].push_back(
+          {static_cast<uint8_t>((c.x & 15) * kTileEdge + (c.y & 15)), static_cast<uint8_t>(c.z & 15), 40,
+           topic, seen});
     });
     for (const auto& [index, cells] : said) tiles[index].set(RobotId{r}, cells);
   }
@@ -200,37 +208,39 @@ void Tiles(benchmark::State& state, bool relief, bool warm) {
   LabelTable labels;
   for (int32_t r = 0; r < kRobots; ++r)
     for (int32_t t = 0; t < kTopics; ++t) labels.set({RobotId{r}, TopicId{t}}, labelOf(r, TopicId{t}));
+  const size_t before = heldBytes();
   std::map<TileIndex, MapTile> tiles = tilesOfAll(relief);
-  using Label = std::array<GlobalLabel, kTileCells>;
+  state.counters["MB"] = static_cast<double>(heldBytes() - before) * 1e-6;
   struct Merged {
-    std::vector<Label> labels;
-    std::vector<TileColumns> newest;
+    std::vector<GlobalLabel> labels;  // of one sheet after the other
+    std::vector<std::byte> newest;
   };
   std::vector<MapTile*> row;
-  for (auto& [index, tile] : tiles) row.push_back(&tile);
-  std::vector<GlobalLabel> of_voice;
+  size_t num_sheets = 0, num_bytes = 0;
+  for (auto& [index, tile] : tiles) {
+    row.push_back(&tile);
+    num_sheets += tile.numSheets();
+    for (size_t s = 0; s < tile.numSheets(); ++s) num_bytes += tile.shown(s).size();
+  }
+  std::vector<GlobalLabel> of;
   run<Merged>(state, kRobots * double{kWindow} * kWindow, warm, [&](Merged& merged) {
-    merged.labels.resize(tiles.size());
-    if (!warm) merged.newest.resize(tiles.size());
-    size_t t = 0;
-    for (MapTile* at : row) {
-      MapTile& tile = *at;
+    merged.labels.resize(num_sheets * kTilePlaces);
+    if (!warm) merged.newest.resize(num_bytes);
+    GlobalLabel* label = merged.labels.data();
+    std::byte* newest = merged.newest.data();
+    for (size_t t = 0; t < row.size(); ++t) {
+      MapTile& tile = *row[t];
       if (t + 8 < row.size()) __builtin_prefetch(row[t + 8]);
       if (t + 4 < row.size()) row[t + 4]->prefetch();
       tile.fold({});
-      of_voice.clear();
-      for (const Voice& voice : tile.voices()) of_voice.push_back(labels.of(voice));
-      const TileColumns& newest = tile.newest();
-      Label& label = merged.labels[t];
-      for (unsigned rows = tile.rowsShown(); rows != 0; rows &= rows - 1) {
-        const auto first = static_cast<size_t>(std::countr_zero(rows)) * kTileEdge;
-        for (size_t i = first; i < first + kTileEdge; ++i) label[i] = of_voice[newest.voice[i]];
-      }
-      if (!warm) merged.newest[t] = newest;  // where the tiles' own memory would be fresh too
-      ++t;
+      tile.label(labels, GlobalLabel{-1}, of, label);
+      label += tile.numSheets() * kTilePlaces;
+      for (size_t s = 0; s < tile.numSheets() && !warm; ++s)  // the tiles' own memory would be fresh too
+        newest = std::ranges::copy(tile.shown(s), newest).out;
     }
     benchmark::ClobberMemory();
   });
+  state.counters["sheets"] = static_cast<double>(num_sheets);
   state.counters["tiles"] = static_cast<double>(tiles.size());
 }
 
