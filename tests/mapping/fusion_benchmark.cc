@@ -74,12 +74,34 @@ struct Cell {
   world::Timestamp seen;
 };
 
-std::vector<Cell> cellsOfAll(bool relief) {
+// In what order a robot's cells come: along its lawnmower, as an octree's leaves lie, or shuffled.
+enum class Order { kLawnmower, kLeaves, kScattered };
+
+uint64_t leafOrder(const CellIndex& cell) {
+  uint64_t code = 0;
+  for (int bit = 15; bit >= 0; --bit)
+    for (const int32_t at : {cell.z, cell.y, cell.x})
+      code = code << 1 | (static_cast<uint32_t>(at + 32768) >> bit & 1u);
+  return code;
+}
+
+std::vector<Cell> cellsOfAll(bool relief, Order order) {
   std::vector<Cell> cells;
   for (int32_t r = 0; r < kRobots; ++r) {
+    const auto first = static_cast<std::ptrdiff_t>(cells.size());
     eachCell(r, relief, kWindow, [&](const CellIndex& c, TopicId topic, world::Timestamp seen) {
       cells.push_back({c, r, topic, seen});
     });
+    const auto key = [&](const Cell& c) {
+      return order == Order::kLeaves ? leafOrder(c.cell) : world::CellHash()(c.cell);
+    };
+    if (order == Order::kLawnmower) continue;
+    std::vector<std::pair<uint64_t, size_t>> ranked;
+    for (size_t i = static_cast<size_t>(first); i < cells.size(); ++i) ranked.emplace_back(key(cells[i]), i);
+    std::ranges::sort(ranked);
+    std::vector<Cell> sorted;
+    for (const auto& [_, i] : ranked) sorted.push_back(cells[i]);
+    std::ranges::copy(sorted, cells.begin() + first);
   }
   return cells;
 }
@@ -110,8 +132,9 @@ struct Held {
   world::Timestamp seen;
 };
 
+template <Order order>
 void UnorderedMap(benchmark::State& state, bool relief, bool warm) {
-  const std::vector<Cell> cells = cellsOfAll(relief);
+  const std::vector<Cell> cells = cellsOfAll(relief, order);
   LabelTable labels;
   for (int32_t r = 0; r < kRobots; ++r)
     for (int32_t t = 0; t < kTopics; ++t) labels.set({RobotId{r}, TopicId{t}}, labelOf(r, TopicId{t}));
@@ -128,8 +151,9 @@ void UnorderedMap(benchmark::State& state, bool relief, bool warm) {
 
 #ifdef SHOAL_HAS_OCTOMAP
 // Its cells have no time: the last one told stays, which costs it nothing to find out.
+template <Order order>
 void OctoMap(benchmark::State& state, bool relief, bool warm) {
-  const std::vector<Cell> cells = cellsOfAll(relief);
+  const std::vector<Cell> cells = cellsOfAll(relief, order);
   struct Tree : octomap::ColorOcTree {
     Tree() : octomap::ColorOcTree(1.0) {}
   };
@@ -371,14 +395,25 @@ BENCHMARK(WholeFusedMapFromPieces)->Unit(benchmark::kMillisecond)->Iterations(3)
       ->Iterations(iterations);                          \
   BENCHMARK_CAPTURE(Structure, flat_warm, false, true)->Unit(benchmark::kMillisecond)->Iterations(iterations)
 BOTH_WAYS(Tiles, 5);
-BOTH_WAYS(UnorderedMap, 2);
+constexpr auto UnorderedMapRows = UnorderedMap<Order::kLawnmower>;
+constexpr auto UnorderedMapLeaves = UnorderedMap<Order::kLeaves>;
+constexpr auto UnorderedMapScattered = UnorderedMap<Order::kScattered>;
+BOTH_WAYS(UnorderedMapRows, 2);
+BOTH_WAYS(UnorderedMapLeaves, 2);
+BOTH_WAYS(UnorderedMapScattered, 2);
 #ifdef SHOAL_HAS_OCTOMAP
-BOTH_WAYS(OctoMap, 1);
+constexpr auto OctoMapRows = OctoMap<Order::kLawnmower>;
+constexpr auto OctoMapLeaves = OctoMap<Order::kLeaves>;
+constexpr auto OctoMapScattered = OctoMap<Order::kScattered>;
+BOTH_WAYS(OctoMapRows, 1);
+BOTH_WAYS(OctoMapLeaves, 1);
+BOTH_WAYS(OctoMapScattered, 1);
 BOTH_WAYS(OctoMapTrees, 1);
 #endif
 
-const char* const kNames[] = {"OneMoreBrick", "WholeFusedMap", "Tiles",
-                              "UnorderedMap", "OctoMap",       "OctoMapTrees"};
+const char* const kNames[] = {
+    "OneMoreBrick",          "WholeFusedMap", "Tiles",         "UnorderedMapRows", "UnorderedMapLeaves",
+    "UnorderedMapScattered", "OctoMapRows",   "OctoMapLeaves", "OctoMapScattered", "OctoMapTrees"};
 
 }  // namespace
 
