@@ -81,7 +81,7 @@ void giveNames(std::vector<LabelSummary>& rows, const Judgement& judgement,
 
 struct ReadTile {
   ReadTile(const TileIndex& at, const MapTile& what, const LabelTable& label) : index(at), tile(&what) {
-    for (const Utterance& said : what.utterances()) labels.push_back(label.of(said.voice));
+    for (size_t u = 0; u < what.numUtterances(); ++u) labels.push_back(label.of(what.utterance(u).voice));
   }
   TileIndex index;
   const MapTile* tile;
@@ -95,7 +95,7 @@ void readPlace(const ReadTile& from, int32_t place, std::vector<GlobalCell>& cel
   for (size_t s = 0; s < tile->numSheets(); ++s) {
     MapTile::Newest cell;
     if (!tile->read(s, static_cast<size_t>(place), cell)) continue;
-    const Utterance& said = tile->utterances()[cell.utterance];
+    const Utterance said = tile->utterance(cell.utterance);
     cells.push_back({{index.x * kTileEdge + place / kTileEdge, index.y * kTileEdge + place % kTileEdge,
                       index.z * kTileEdge + cell.height},
                      labels[cell.utterance],

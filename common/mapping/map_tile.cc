@@ -62,16 +62,26 @@ struct MapTile::Said {
   uint32_t utterance = 0;
 };
 
-std::span<const Utterance> MapTile::utterances() const {
-  return {reinterpret_cast<const Utterance*>(memory_.data()), num_utterances_};
+std::span<const Voice> MapTile::voices() const {
+  return {reinterpret_cast<const Voice*>(memory_.data()), num_utterances_};
 }
 
 std::span<const MapTile::Layer> MapTile::layers() const {
-  return {reinterpret_cast<const Layer*>(memory_.data() + num_utterances_ * sizeof(Utterance)), num_layers_};
+  return {reinterpret_cast<const Layer*>(memory_.data() + num_utterances_ * sizeof(Voice)), num_layers_};
+}
+
+std::span<const world::Timestamp> MapTile::times() const {
+  return {reinterpret_cast<const world::Timestamp*>(memory_.data() + timesAt()), num_utterances_};
 }
 
 size_t MapTile::sheetAt(size_t s) const {
-  return num_utterances_ * sizeof(Utterance) + num_layers_ * sizeof(Layer) + s * kTilePlaces * (rank_ + 2u);
+  return num_utterances_ * sizeof(Voice) + num_layers_ * sizeof(Layer) + s * kTilePlaces * (rank_ + 1u);
+}
+
+size_t MapTile::timesAt() const { return sheetAt(num_sheets_) + num_rows_ * kTileEdge * (rank_ + 1u); }
+
+size_t MapTile::heightsAt(size_t s) const {
+  return timesAt() + num_utterances_ * sizeof(world::Timestamp) + s * kTilePlaces;
 }
 
 bool MapTile::holds(world::RobotId robot) const {
@@ -84,11 +94,11 @@ void MapTile::set(world::RobotId robot, std::span<const TileCell> cells) {
   for (const Said& s : said) is_used[s.utterance] = 1;
   std::vector<Utterance> now;
   for (size_t u = 0; u < num_utterances_; ++u)
-    if (is_used[u]) now.push_back(utterances()[u]);
+    if (is_used[u]) now.push_back(utterance(u));
   for (const TileCell& c : cells) now.push_back({c.seen, {robot, c.topic}});
   makeAscending(now);
   std::vector<uint32_t> number(num_utterances_);
-  for (size_t u = 0; u < num_utterances_; ++u) number[u] = numberOf(now, utterances()[u]);
+  for (size_t u = 0; u < num_utterances_; ++u) number[u] = numberOf(now, utterance(u));
   for (Said& s : said) s.utterance = number[s.utterance];
 
   std::vector<Said> own;
@@ -104,8 +114,7 @@ std::vector<MapTile::Said> MapTile::saidByOthers(world::RobotId robot) const {
   std::vector<Said> said;
   const std::byte* ranks = memory_.data() + sheetAt(num_sheets_);
   for (const Layer& layer : layers()) {
-    const auto* const heights =
-        reinterpret_cast<const uint8_t*>(memory_.data() + sheetAt(layer.sheet)) + kTilePlaces * (rank_ + 1u);
+    const auto* const heights = reinterpret_cast<const uint8_t*>(memory_.data() + heightsAt(layer.sheet));
     const size_t num_places = static_cast<size_t>(std::popcount(layer.rows)) * kTileEdge;
     const std::byte* const certainty = ranks + num_places * rank_;
     size_t i = 0;
@@ -129,7 +138,7 @@ void MapTile::build(const std::vector<Said>& said, const std::vector<Utterance>&
   std::vector<uint16_t> sheet_of;
   std::vector<Layer> layers;
   std::vector<size_t> layer_of;  // by sheet, of the robot at hand
-  size_t num_rows = 0;
+  num_rows_ = 0;
   for (size_t i = 0; i < said.size(); ++i) {
     const uint16_t sheet = sheet_of.emplace_back(sheetFor(said[i].place, said[i].height, sheets));
     if (i == 0 || said[i - 1].robot != said[i].robot) layer_of.clear();
@@ -140,7 +149,7 @@ void MapTile::build(const std::vector<Said>& said, const std::vector<Utterance>&
     }
     uint16_t& rows = layers[layer_of[sheet]].rows;
     const auto row = static_cast<uint16_t>(1u << said[i].place / kTileEdge);
-    num_rows += (rows & row) == 0 ? 1 : 0;
+    num_rows_ += (rows & row) == 0 ? 1 : 0;
     rows = static_cast<uint16_t>(rows | row);
   }
 
@@ -148,35 +157,39 @@ void MapTile::build(const std::vector<Said>& said, const std::vector<Utterance>&
   num_layers_ = static_cast<uint32_t>(layers.size());
   num_sheets_ = static_cast<uint16_t>(sheets.size());
   rank_ = num_utterances_ <= UINT8_MAX ? 1 : num_utterances_ <= UINT16_MAX ? 2 : 4;
-  const size_t size = sheetAt(num_sheets_) + num_rows * kTileEdge * (rank_ + 1u);
+  const size_t size = heightsAt(num_sheets_);
   memory_ = size == 0 ? TileMemory() : TileMemory(size);
-  std::ranges::copy(utterances, reinterpret_cast<Utterance*>(memory_.data()));
-  std::ranges::copy(layers, reinterpret_cast<Layer*>(memory_.data() + num_utterances_ * sizeof(Utterance)));
-  for (size_t s = 0; s < sheets.size(); ++s) {
-    std::memcpy(memory_.data() + sheetAt(s) + kTilePlaces * (rank_ + 1u), sheets[s].data(), kTilePlaces);
-  }
+  auto* const voice = reinterpret_cast<Voice*>(memory_.data());
+  auto* const time = reinterpret_cast<world::Timestamp*>(memory_.data() + timesAt());
+  std::ranges::transform(utterances, voice, &Utterance::voice);
+  std::ranges::transform(utterances, time, &Utterance::seen);
+  std::ranges::copy(layers, reinterpret_cast<Layer*>(memory_.data() + num_utterances_ * sizeof(Voice)));
+  for (size_t s = 0; s < sheets.size(); ++s)
+    std::memcpy(memory_.data() + heightsAt(s), sheets[s].data(), kTilePlaces);
+  writeLayers(said, sheet_of);
+}
+
+void MapTile::writeLayers(std::span<const Said> said, const std::vector<uint16_t>& sheet_of) {
+  struct At {
+    std::byte* ranks = nullptr;
+    unsigned rows = 0;
+  };
+  std::vector<At> own(num_sheets_);  // of the robot at hand
   std::byte* ranks = memory_.data() + sheetAt(num_sheets_);
-  for (size_t i = 0, l = 0; l < layers.size();) {
-    // A robot's cells, and its layers.
-    size_t end = i, end_layer = l;
-    while (end < said.size() && said[end].robot == said[i].robot) ++end;
-    std::vector<std::byte*> ranks_of(sheets.size());
-    std::vector<uint16_t> rows_of(sheets.size());
-    for (; end_layer < layers.size() && layers[end_layer].robot == said[i].robot; ++end_layer) {
-      const auto& [_, sheet, rows] = layers[end_layer];
-      ranks_of[sheet] = ranks;
-      rows_of[sheet] = rows;
-      ranks += static_cast<size_t>(std::popcount(rows)) * kTileEdge * (rank_ + 1u);
+  auto layer = layers().begin();
+  for (size_t i = 0; i < said.size(); ++i) {
+    if (i == 0 || said[i - 1].robot != said[i].robot) {
+      for (; layer != layers().end() && layer->robot == said[i].robot; ++layer) {
+        own[layer->sheet] = {ranks, layer->rows};
+        ranks += static_cast<size_t>(std::popcount(layer->rows)) * kTileEdge * (rank_ + 1u);
+      }
     }
-    for (; i < end; ++i) {
-      const unsigned rows = rows_of[sheet_of[i]], row = said[i].place / unsigned{kTileEdge};
-      const auto at = static_cast<size_t>(std::popcount(rows & ((1u << row) - 1u))) * kTileEdge +
-                      said[i].place % size_t{kTileEdge};
-      std::byte* const own = ranks_of[sheet_of[i]];
-      storeRank(own, at, rank_, said[i].utterance + 1);
-      own[static_cast<size_t>(std::popcount(rows)) * kTileEdge * rank_ + at] = std::byte{said[i].steps};
-    }
-    l = end_layer;
+    const auto& [first, rows] = own[sheet_of[i]];
+    const unsigned row = said[i].place / unsigned{kTileEdge};
+    const auto at = static_cast<size_t>(std::popcount(rows & ((1u << row) - 1u))) * kTileEdge +
+                    said[i].place % size_t{kTileEdge};
+    storeRank(first, at, rank_, said[i].utterance + 1);
+    first[static_cast<size_t>(std::popcount(rows)) * kTileEdge * rank_ + at] = std::byte{said[i].steps};
   }
 }
 
@@ -196,7 +209,7 @@ void MapTile::fold(const std::set<world::RobotId>& excluded) {
 }
 
 void MapTile::prefetch() const {
-  for (size_t at = 0; at < memory_.size(); at += TileMemory::kLine) __builtin_prefetch(memory_.data() + at);
+  for (size_t at = 0; at < timesAt(); at += TileMemory::kLine) __builtin_prefetch(memory_.data() + at);
 }
 
 bool MapTile::read(size_t sheet, size_t place, Newest& cell) const {
@@ -205,7 +218,7 @@ bool MapTile::read(size_t sheet, size_t place, Newest& cell) const {
   if (rank == 0) return false;
   cell.utterance = rank - 1;
   cell.steps = static_cast<uint8_t>(ranks[kTilePlaces * rank_ + place]);
-  cell.height = static_cast<uint8_t>(ranks[kTilePlaces * (rank_ + 1u) + place]);
+  cell.height = static_cast<uint8_t>(memory_.data()[heightsAt(sheet) + place]);
   return true;
 }
 
@@ -217,7 +230,7 @@ void MapTile::label(const LabelTable& table, world::GlobalLabel nothing, std::ve
                     world::GlobalLabel* labels) const {
   of.resize(num_utterances_ + size_t{1});
   of[0] = nothing;
-  for (size_t u = 0; u < num_utterances_; ++u) of[u + 1] = table.of(utterances()[u].voice);
+  for (size_t u = 0; u < num_utterances_; ++u) of[u + 1] = table.of(voices()[u]);
   for (size_t s = 0; s < num_sheets_; ++s, labels += kTilePlaces) {
     const std::byte* const ranks = memory_.data() + sheetAt(s);
     if (rank_ == 1) labelPlaces<uint8_t>(ranks, of.data(), labels);
@@ -236,7 +249,7 @@ void MapTile::count(const TileIndex& index) {
     for (size_t place = 0; place < kTilePlaces; ++place) {
       Newest cell;
       if (!read(s, place, cell)) continue;
-      const Utterance& said = utterances()[cell.utterance];
+      const Utterance said = utterance(cell.utterance);
       Sum& sum = sums[cell.utterance];
       ++sum.cells;
       sum.hash += cellHash(
@@ -248,7 +261,7 @@ void MapTile::count(const TileIndex& index) {
   tallies_.clear();
   for (size_t u = 0; u < num_utterances_; ++u) {  // the earliest first
     if (sums[u].cells == 0) continue;
-    const Utterance& said = utterances()[u];
+    const Utterance said = utterance(u);
     auto tally = std::ranges::lower_bound(tallies_, said.voice, {}, &Tally::voice);
     if (tally == tallies_.end() || tally->voice != said.voice)
       tally = tallies_.insert(tally, {said.voice, 0, said.seen, 0});

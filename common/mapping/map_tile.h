@@ -59,7 +59,7 @@ class MapTile {
   struct Newest {
     uint8_t height = 0;
     uint8_t steps = 0;
-    uint32_t utterance = 0;  ///< place in utterances()
+    uint32_t utterance = 0;  ///< its number, from 0
   };
 
   /// Lets `robot` say these cells, each once, and nothing else. None: it says nothing here.
@@ -80,7 +80,8 @@ class MapTile {
   void count(const TileIndex& index);
 
   /// @name The outcome of fold(). @{
-  std::span<const Utterance> utterances() const;  ///< ascending
+  size_t numUtterances() const { return num_utterances_; }
+  Utterance utterance(size_t u) const { return {times()[u], voices()[u]}; }  ///< ascending
   size_t numSheets() const { return num_sheets_; }
   /// @returns false where nothing is said.
   bool read(size_t sheet, size_t place, Newest& cell) const;
@@ -110,15 +111,21 @@ class MapTile {
 
   std::vector<Said> saidByOthers(world::RobotId robot) const;
   void build(const std::vector<Said>& said, const std::vector<Utterance>& utterances);
+  void writeLayers(std::span<const Said> said, const std::vector<uint16_t>& sheet_of);
 
-  // In this order, in memory_: utterances, layers; of each sheet ranks, certainties, heights; of each layer
-  // its rows' ranks and certainties.
+  // In this order, in memory_: what fold() and label() read: utterances' voices, layers, of each sheet ranks
+  // and certainties, of each layer its rows' ranks and certainties; then utterances' times, and of each sheet
+  // heights.
+  std::span<const Voice> voices() const;
   std::span<const Layer> layers() const;
+  std::span<const world::Timestamp> times() const;
   size_t sheetAt(size_t sheet) const;
+  size_t timesAt() const;
+  size_t heightsAt(size_t sheet) const;
 
   TileMemory memory_;
-  uint32_t num_utterances_ = 0, num_layers_ = 0;
-  uint16_t num_sheets_ = 0, rank_ = 1;  // bytes in a rank
+  uint32_t num_utterances_ = 0, num_layers_ = 0, num_rows_ = 0;  // rows of all layers
+  uint16_t num_sheets_ = 0, rank_ = 1;                           // bytes in a rank
   std::vector<Tally> tallies_;
 };
 

@@ -69,7 +69,7 @@ void expectEqual(MapTile& tile, const PlainTile& plain, const std::set<RobotId>&
         ASSERT_EQ(label, GlobalLabel{-5});
         continue;
       }
-      const Utterance& said = tile.utterances()[cell.utterance];
+      const Utterance said = tile.utterance(cell.utterance);
       ASSERT_EQ(label, table.of(said.voice));
       const bool is_once =
           shown.emplace(Place{static_cast<uint8_t>(place), cell.height}, PlainTile::Shown{said, cell.steps})
@@ -160,7 +160,7 @@ TEST(MapTileTest, HoldsMoreUtterancesThanTwoBytesCount) {
     tile.set(RobotId{r}, cells);
     plain.set(RobotId{r}, cells);
   }
-  ASSERT_GT(tile.utterances().size(), 65535u);
+  ASSERT_GT(tile.numUtterances(), 65535u);
   expectEqual(tile, plain, {});
   expectEqual(tile, plain, {RobotId{0}, RobotId{9}, RobotId{16}});
 }
