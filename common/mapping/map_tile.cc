@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstring>
 
 #include "shoal/mapping/global_map.h"
 #include "shoal/mapping/piece.h"
@@ -209,7 +210,9 @@ void MapTile::fold(const std::set<world::RobotId>& excluded) {
 }
 
 void MapTile::prefetch() const {
-  for (size_t at = 0; at < timesAt(); at += TileMemory::kLine) __builtin_prefetch(memory_.data() + at);
+  constexpr int kIntoSecondCache = 2;
+  for (size_t at = 0; at < timesAt(); at += TileMemory::kLine)
+    __builtin_prefetch(memory_.data() + at, 0, kIntoSecondCache);
 }
 
 bool MapTile::read(size_t sheet, size_t place, Newest& cell) const {

@@ -41,10 +41,10 @@ struct Utterance {
 /// Its cells lie in sheets. A sheet has one cell, of whatever height, in each of its 256 columns: a surface,
 /// rough or flat, is one sheet, and what overhangs it goes into the next. All robots share the heights.
 /// Utterances are numbered within the tile, the newest last, so that the newest of a cell is the greatest
-/// number: a cell takes two bytes of every robot (three in tiles with more than 255 utterances), whatever
-/// times, robots and topics there are. Labels are not in it: a new matching leaves tiles as they are. Of a
-/// robot only the rows of sixteen columns are held in which it says something. All lies in one piece of
-/// memory.
+/// number: a cell takes two bytes of every robot (three in tiles with more than 255 utterances, five above
+/// 65,535), and an utterance sixteen, whatever times, robots and topics there are. Labels are not in it: a
+/// new matching leaves tiles as they are. Of a robot only the rows of sixteen columns are held in which it
+/// says something. All lies in one piece of memory.
 class MapTile {
  public:
   /// What a voice shows in this tile after fold().

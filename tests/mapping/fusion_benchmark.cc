@@ -8,7 +8,7 @@
 #include <malloc.h>
 #include <sys/wait.h>
 
-#include <bit>
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <map>
@@ -228,7 +228,8 @@ std::map<TileIndex, MapTile> tilesOfAll(bool relief) {
 }
 
 // Ours: the newest of every cell with its time, robot, topic and certainty, and its label in a column beside.
-void Tiles(benchmark::State& state, bool relief, bool warm) {
+template <bool is_labelled>
+void Fold(benchmark::State& state, bool relief, bool warm) {
   LabelTable labels;
   for (int32_t r = 0; r < kRobots; ++r)
     for (int32_t t = 0; t < kTopics; ++t) labels.set({RobotId{r}, TopicId{t}}, labelOf(r, TopicId{t}));
@@ -236,8 +237,8 @@ void Tiles(benchmark::State& state, bool relief, bool warm) {
   std::map<TileIndex, MapTile> tiles = tilesOfAll(relief);
   state.counters["MB"] = static_cast<double>(heldBytes() - before) * 1e-6;
   struct Merged {
-    std::vector<GlobalLabel> labels;  // of one sheet after the other
-    std::vector<std::byte> newest;
+    std::unique_ptr<GlobalLabel[]> labels;  // of one sheet after the other
+    std::unique_ptr<std::byte[]> newest;
   };
   std::vector<MapTile*> row;
   size_t num_sheets = 0, num_bytes = 0;
@@ -248,16 +249,17 @@ void Tiles(benchmark::State& state, bool relief, bool warm) {
   }
   std::vector<GlobalLabel> of;
   run<Merged>(state, kRobots * double{kWindow} * kWindow, warm, [&](Merged& merged) {
-    merged.labels.resize(num_sheets * kTilePlaces);
-    if (!warm) merged.newest.resize(num_bytes);
-    GlobalLabel* label = merged.labels.data();
-    std::byte* newest = merged.newest.data();
+    if (!merged.labels)
+      merged.labels = std::make_unique_for_overwrite<GlobalLabel[]>(num_sheets * kTilePlaces);
+    if (!warm) merged.newest = std::make_unique_for_overwrite<std::byte[]>(num_bytes);
+    GlobalLabel* label = merged.labels.get();
+    std::byte* newest = merged.newest.get();
     for (size_t t = 0; t < row.size(); ++t) {
       MapTile& tile = *row[t];
       if (t + 8 < row.size()) __builtin_prefetch(row[t + 8]);
       if (t + 4 < row.size()) row[t + 4]->prefetch();
       tile.fold({});
-      tile.label(labels, GlobalLabel{-1}, of, label);
+      if (is_labelled) tile.label(labels, GlobalLabel{-1}, of, label);
       label += tile.numSheets() * kTilePlaces;
       for (size_t s = 0; s < tile.numSheets() && !warm; ++s)  // the tiles' own memory would be fresh too
         newest = std::ranges::copy(tile.shown(s), newest).out;
@@ -394,7 +396,10 @@ BENCHMARK(WholeFusedMapFromPieces)->Unit(benchmark::kMillisecond)->Iterations(3)
       ->Unit(benchmark::kMillisecond)                    \
       ->Iterations(iterations);                          \
   BENCHMARK_CAPTURE(Structure, flat_warm, false, true)->Unit(benchmark::kMillisecond)->Iterations(iterations)
+constexpr auto Tiles = Fold<true>;
+constexpr auto TilesUnlabelled = Fold<false>;
 BOTH_WAYS(Tiles, 5);
+BOTH_WAYS(TilesUnlabelled, 5);
 constexpr auto UnorderedMapRows = UnorderedMap<Order::kLawnmower>;
 constexpr auto UnorderedMapLeaves = UnorderedMap<Order::kLeaves>;
 constexpr auto UnorderedMapScattered = UnorderedMap<Order::kScattered>;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "shoal/mapping/map_tile.h"
 
+#include <algorithm>
 #include <map>
 #include <tuple>
 
