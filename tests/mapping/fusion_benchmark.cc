@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Merging the maps of twelve robots, a million cells each: the newest wins, labels are translated. Windows of
-// 1000 x 1000 cells lie at random in 2500 x 2500; "relief" is a height field in 3-D, "flat" has one height.
-// Times are a cell that goes in. Every structure runs in a process of its own, unless a filter is given:
-// "cold" on fresh memory, "warm" in place: into what an earlier merge has left.
+// 1000 x 1000 cells lie at random in 2500 x 2500; "relief" is a height field in 3-D, in "rough" robots do not
+// agree on heights, "flat" has one height. Times are a cell that goes in. Every structure runs in a process of
+// its own, unless a filter is given: "cold" on fresh memory, "warm" in place: into what an earlier merge has
+// left.
 #include <benchmark/benchmark.h>
 
 #include <malloc.h>
@@ -44,9 +45,19 @@ int32_t heightAt(int32_t x, int32_t y) {
       std::lround(8 * std::sin(x * 0.013) * std::cos(y * 0.011) + 3 * std::sin(x * 0.07 + y * 0.05)));
 }
 
+// "Rough": every robot errs by a cell in height in two cells of three.
+enum class Scene { kFlat, kRelief, kRough };
+
+int32_t heightIn(Scene scene, int32_t robot, int32_t x, int32_t y) {
+  if (scene == Scene::kFlat) return 0;
+  if (scene == Scene::kRelief) return heightAt(x, y);
+  return heightAt(x, y) +
+         static_cast<int32_t>(mix64(static_cast<uint64_t>((x * 4000 + y) * 16 + robot)) % 3) - 1;
+}
+
 // A robot's cells in the order of its lawnmower; topics in patches of 10 x 10, three in a hundred astray.
 template <class Visit>
-void eachCell(int32_t robot, bool relief, int32_t window, Visit visit) {
+void eachCell(int32_t robot, Scene scene, int32_t window, Visit visit) {
   Random random(3, static_cast<uint64_t>(robot));
   const auto room = static_cast<uint64_t>(kPlace - kWindow);
   const auto x0 = static_cast<int32_t>(random.below(room)), y0 = static_cast<int32_t>(random.below(room));
@@ -56,7 +67,7 @@ void eachCell(int32_t robot, bool relief, int32_t window, Visit visit) {
                                  ? random()
                                  : mix64(static_cast<uint64_t>(x / 10 * 1000 + y / 10) + 7u * robot);
       const int64_t second = int64_t{x - x0} / 16 * 40 + (y - y0) / 25 + robot * 37;
-      visit(CellIndex{x, y, relief ? heightAt(x, y) : 0}, TopicId{static_cast<int32_t>(patch % kTopics)},
+      visit(CellIndex{x, y, heightIn(scene, robot, x, y)}, TopicId{static_cast<int32_t>(patch % kTopics)},
             world::Timestamp{second * 1'000'000});
     }
   }
@@ -85,11 +96,11 @@ uint64_t leafOrder(const CellIndex& cell) {
   return code;
 }
 
-std::vector<Cell> cellsOfAll(bool relief, Order order) {
+std::vector<Cell> cellsOfAll(Scene scene, Order order) {
   std::vector<Cell> cells;
   for (int32_t r = 0; r < kRobots; ++r) {
     const auto first = static_cast<std::ptrdiff_t>(cells.size());
-    eachCell(r, relief, kWindow, [&](const CellIndex& c, TopicId topic, world::Timestamp seen) {
+    eachCell(r, scene, kWindow, [&](const CellIndex& c, TopicId topic, world::Timestamp seen) {
       cells.push_back({c, r, topic, seen});
     });
     const auto key = [&](const Cell& c) {
@@ -133,8 +144,8 @@ struct Held {
 };
 
 template <Order order>
-void UnorderedMap(benchmark::State& state, bool relief, bool warm) {
-  const std::vector<Cell> cells = cellsOfAll(relief, order);
+void UnorderedMap(benchmark::State& state, Scene scene, bool warm) {
+  const std::vector<Cell> cells = cellsOfAll(scene, order);
   LabelTable labels;
   for (int32_t r = 0; r < kRobots; ++r)
     for (int32_t t = 0; t < kTopics; ++t) labels.set({RobotId{r}, TopicId{t}}, labelOf(r, TopicId{t}));
@@ -152,8 +163,8 @@ void UnorderedMap(benchmark::State& state, bool relief, bool warm) {
 #ifdef SHOAL_HAS_OCTOMAP
 // Its cells have no time: the last one told stays, which costs it nothing to find out.
 template <Order order>
-void OctoMap(benchmark::State& state, bool relief, bool warm) {
-  const std::vector<Cell> cells = cellsOfAll(relief, order);
+void OctoMap(benchmark::State& state, Scene scene, bool warm) {
+  const std::vector<Cell> cells = cellsOfAll(scene, order);
   struct Tree : octomap::ColorOcTree {
     Tree() : octomap::ColorOcTree(1.0) {}
   };
@@ -172,7 +183,7 @@ void OctoMap(benchmark::State& state, bool relief, bool warm) {
 
 // The maps of the robots are trees too, and time is what the tree knows as occupancy: leaf by leaf the newest
 // wins.
-void OctoMapTrees(benchmark::State& state, bool relief, bool warm) {
+void OctoMapTrees(benchmark::State& state, Scene scene, bool warm) {
   struct Tree : octomap::ColorOcTree {
     Tree() : octomap::ColorOcTree(1.0) {
       setClampingThresMin(0.0);
@@ -182,7 +193,7 @@ void OctoMapTrees(benchmark::State& state, bool relief, bool warm) {
   std::vector<std::unique_ptr<Tree>> robots;
   for (int32_t r = 0; r < kRobots; ++r) {
     Tree& tree = *robots.emplace_back(std::make_unique<Tree>());
-    eachCell(r, relief, kWindow, [&](const CellIndex& c, TopicId topic, world::Timestamp seen) {
+    eachCell(r, scene, kWindow, [&](const CellIndex& c, TopicId topic, world::Timestamp seen) {
       const octomap::OcTreeKey key(static_cast<uint16_t>(32768 + c.x), static_cast<uint16_t>(32768 + c.y),
                                    static_cast<uint16_t>(32768 + c.z));
       tree.setNodeValue(key, static_cast<float>(seen.us / 1'000'000), true)
@@ -213,11 +224,11 @@ size_t heldBytes() {
 }
 
 // The tiles that all robots have filled, ready to be folded.
-std::map<TileIndex, MapTile> tilesOfAll(bool relief) {
+std::map<TileIndex, MapTile> tilesOfAll(Scene scene) {
   std::map<TileIndex, MapTile> tiles;
   for (int32_t r = 0; r < kRobots; ++r) {
     std::map<TileIndex, std::vector<TileCell>> said;
-    eachCell(r, relief, kWindow, [&](const CellIndex& c, TopicId topic, world::Timestamp seen) {
+    eachCell(r, scene, kWindow, [&](const CellIndex& c, TopicId topic, world::Timestamp seen) {
       said[{c.x >> 4, c.y >> 4, c.z >> 4}].push_back(
           {static_cast<uint8_t>((c.x & 15) * kTileEdge + (c.y & 15)), static_cast<uint8_t>(c.z & 15), 40,
            topic, seen});
@@ -229,12 +240,12 @@ std::map<TileIndex, MapTile> tilesOfAll(bool relief) {
 
 // Ours: the newest of every cell with its time, robot, topic and certainty, and its label in a column beside.
 template <bool is_labelled>
-void Fold(benchmark::State& state, bool relief, bool warm) {
+void Fold(benchmark::State& state, Scene scene, bool warm) {
   LabelTable labels;
   for (int32_t r = 0; r < kRobots; ++r)
     for (int32_t t = 0; t < kTopics; ++t) labels.set({RobotId{r}, TopicId{t}}, labelOf(r, TopicId{t}));
   const size_t before = heldBytes();
-  std::map<TileIndex, MapTile> tiles = tilesOfAll(relief);
+  std::map<TileIndex, MapTile> tiles = tilesOfAll(scene);
   state.counters["MB"] = static_cast<double>(heldBytes() - before) * 1e-6;
   struct Merged {
     std::unique_ptr<GlobalLabel[]> labels;  // of one sheet after the other
@@ -273,7 +284,7 @@ void Fold(benchmark::State& state, bool relief, bool warm) {
 // A robot's map as pieces.
 void offer(BeliefStore& store, int32_t robot, int32_t window) {
   std::map<std::array<int32_t, 3>, BrickPart> bricks;
-  eachCell(robot, true, window, [&](const CellIndex& c, TopicId topic, world::Timestamp seen) {
+  eachCell(robot, Scene::kRelief, window, [&](const CellIndex& c, TopicId topic, world::Timestamp seen) {
     bricks[brickOf(c)].cells.push_back({c, topic, seen});
   });
   for (auto& [index, part] : bricks) {
@@ -385,17 +396,15 @@ void WholeFusedMapFromPieces(benchmark::State& state) {
 }
 BENCHMARK(WholeFusedMapFromPieces)->Unit(benchmark::kMillisecond)->Iterations(3);
 
-#define BOTH_WAYS(Structure, iterations)                 \
-  BENCHMARK_CAPTURE(Structure, relief_cold, true, false) \
-      ->Unit(benchmark::kMillisecond)                    \
-      ->Iterations(iterations);                          \
-  BENCHMARK_CAPTURE(Structure, relief_warm, true, true)  \
-      ->Unit(benchmark::kMillisecond)                    \
-      ->Iterations(iterations);                          \
-  BENCHMARK_CAPTURE(Structure, flat_cold, false, false)  \
-      ->Unit(benchmark::kMillisecond)                    \
-      ->Iterations(iterations);                          \
-  BENCHMARK_CAPTURE(Structure, flat_warm, false, true)->Unit(benchmark::kMillisecond)->Iterations(iterations)
+#define IN_SCENE(Structure, name, scene, is_warm, iterations) \
+  BENCHMARK_CAPTURE(Structure, name, scene, is_warm)->Unit(benchmark::kMillisecond)->Iterations(iterations)
+#define BOTH_WAYS(Structure, iterations)                               \
+  IN_SCENE(Structure, relief_cold, Scene::kRelief, false, iterations); \
+  IN_SCENE(Structure, relief_warm, Scene::kRelief, true, iterations);  \
+  IN_SCENE(Structure, rough_cold, Scene::kRough, false, iterations);   \
+  IN_SCENE(Structure, rough_warm, Scene::kRough, true, iterations);    \
+  IN_SCENE(Structure, flat_cold, Scene::kFlat, false, iterations);     \
+  IN_SCENE(Structure, flat_warm, Scene::kFlat, true, iterations)
 constexpr auto Tiles = Fold<true>;
 constexpr auto TilesUnlabelled = Fold<false>;
 BOTH_WAYS(Tiles, 5);
@@ -431,7 +440,8 @@ int main(int argc, char** argv) {
     std::string command = std::string("'") + argv[0] + "'";
     for (int i = 1; i < argc; ++i) command += std::string(" '") + argv[i] + "'";
     for (const char* name : kNames) {
-      for (const char* scene : {"relief_cold", "relief_warm", "flat_cold", "flat_warm", ""}) {
+      for (const char* scene :
+           {"relief_cold", "relief_warm", "rough_cold", "rough_warm", "flat_cold", "flat_warm", ""}) {
         const bool whole = std::string(name).find("Brick") != std::string::npos || *name == 'W';
         if (whole != (*scene == 0)) continue;
         const std::string filter = std::string(name) + (whole ? "" : "/") + scene;
