@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Merging the maps of twelve robots, a million cells each: the newest wins, labels are translated. Windows of
 // 1000 x 1000 cells lie at random in 2500 x 2500; "relief" is a height field in 3-D, in "rough" robots do not
-// agree on heights, "flat" has one height. Times are a cell that goes in. Every structure runs in a process of
-// its own, unless a filter is given: "cold" on fresh memory, "warm" in place: into what an earlier merge has
-// left.
+// agree on heights, "flat" has one height. Times are a cell that goes in. Every structure runs in a process
+// of its own, unless a filter is given: "cold" on fresh memory, "warm" in place: into what an earlier merge
+// has left.
 #include <benchmark/benchmark.h>
 
 #include <malloc.h>
