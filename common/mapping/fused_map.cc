@@ -172,7 +172,8 @@ std::set<FusedMap::RobotBrick> FusedMap::changes(const BeliefStore& beliefs) {
 }
 
 void FusedMap::readBrick(const BeliefStore& beliefs, const RobotBrick& at, std::set<TileIndex>& touched) {
-  const auto& [robot, brick] = at;
+  const auto robot = at.first;
+  const auto& brick = at.second;
   Spoken spoken;
   beliefs.visitOf(PieceKey{robot, PieceKind::kBrick, brick}, [&](const Piece& piece) {
     for (const BrickCell& c : std::get<BrickPart>(piece.content).cells) {
@@ -210,9 +211,9 @@ void FusedMap::exclude(const std::set<world::RobotId>& robots, std::set<TileInde
   if (robots == excluded_) return;
   std::vector<world::RobotId> judged_anew;
   std::ranges::set_symmetric_difference(robots, excluded_, std::back_inserter(judged_anew));
-  for (const auto& [index, tile] : tiles_) {
-    if (std::ranges::any_of(judged_anew, [&](world::RobotId robot) { return tile.holds(robot); }))
-      touched.insert(index);
+  for (const auto& each : tiles_) {
+    if (std::ranges::any_of(judged_anew, [&](world::RobotId robot) { return each.second.holds(robot); }))
+      touched.insert(each.first);
   }
   excluded_ = robots;
 }

@@ -14,9 +14,10 @@ class TileMemory {
 
   TileMemory() = default;
   explicit TileMemory(size_t size);
+  TileMemory(const TileMemory& other);
   TileMemory(TileMemory&& other) noexcept
       : data_(std::exchange(other.data_, nullptr)), size_(std::exchange(other.size_, 0)) {}
-  TileMemory& operator=(TileMemory&& other) noexcept {
+  TileMemory& operator=(TileMemory other) noexcept {
     std::swap(data_, other.data_);
     std::swap(size_, other.size_);
     return *this;

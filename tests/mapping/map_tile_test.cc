@@ -166,6 +166,26 @@ TEST(MapTileTest, HoldsMoreUtterancesThanTwoBytesCount) {
   expectEqual(tile, plain, {RobotId{0}, RobotId{9}, RobotId{16}});
 }
 
+// The page's server keeps a copy of the map while the first goes on.
+TEST(MapTileTest, ACopyGoesItsOwnWay) {
+  const std::vector<TileCell> old{{3, 4, 9, TopicId{1}, {10}}}, young{{3, 4, 5, TopicId{2}, {20}}};
+  MapTile tile;
+  PlainTile plain, changed;
+  tile.set(RobotId{1}, old);
+  plain.set(RobotId{1}, old);
+  MapTile copy = tile;
+  copy.set(RobotId{2}, young);
+  changed.set(RobotId{1}, old);
+  changed.set(RobotId{2}, young);
+  expectEqual(copy, changed, {});
+  expectEqual(tile, plain, {});
+  copy = MapTile{};
+  EXPECT_TRUE(copy.isEmpty());
+  expectEqual(tile, plain, {});
+  tile = MapTile(tile);
+  expectEqual(tile, plain, {});
+}
+
 // A rough surface is one sheet; two bytes a cell of every robot and three for the one that is shown, and what
 // says who says what when.
 TEST(MapTileTest, HoldsASurfaceInOneSheet) {
