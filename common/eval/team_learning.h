@@ -31,7 +31,7 @@ std::vector<mapping::LocalBelief> learn(const std::vector<world::WordsInCells>& 
                                         std::span<const int32_t> checkpoints);
 
 /// What a robot sends in a mission without losses: the changes of its belief after every fifth image and the
-/// last, as robot_agent publishes them.
+/// last, all at once, where robot_agent tells a fifth of them with every image.
 struct SentBytes {
   int64_t topics = 0, map = 0;  ///< bytes on the wire, all headers counted; map = labels and certainties
   int64_t datagrams = 0;
