@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "shoal/mapping/tile_memory.h"
 
+#include <algorithm>
 #include <cstring>
 
 namespace shoal::mapping {
@@ -10,12 +11,8 @@ TileMemory::TileMemory(size_t size)
   std::memset(data_, 0, size);
 }
 
-TileMemory::TileMemory(const TileMemory& other) {
-  if (other.size_ == 0) return;
-  TileMemory copy(other.size_);
-  std::memcpy(copy.data_, other.data_, other.size_);
-  std::swap(data_, copy.data_);
-  std::swap(size_, copy.size_);
+TileMemory::TileMemory(const TileMemory& other) : TileMemory(other.size_) {
+  std::copy_n(other.data_, size_, data_);
 }
 
 TileMemory::~TileMemory() { ::operator delete (data_, std::align_val_t{kLine}); }

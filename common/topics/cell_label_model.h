@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <span>
 #include <vector>
 
@@ -12,7 +13,6 @@
 #include "shoal/topics/label_counts.h"
 #include "shoal/topics/learner.h"
 #include "shoal/topics/neighborhood.h"
-#include "shoal/topics/steady_vector.h"
 #include "shoal/topics/surprise.h"
 #include "shoal/topics/surprise_scale.h"
 #include "shoal/topics/topic_slots.h"
@@ -154,9 +154,9 @@ class CellLabelModel final : public Learner {
   LabelCounts counts_;
   TopicSlots slots_;
   Neighborhood neighborhood_;
-  SteadyVector<LabelledCell> cells_;  // by number, as in neighborhood_
-  std::vector<int32_t> cells_of_;     // by slot; one more of each known topic
-  std::vector<int32_t> twin_of_;  // by slot: the lowest of its twins when last compared; itself when closed
+  std::deque<LabelledCell> cells_;  // by number, as in neighborhood_; grows without moving what it holds
+  std::vector<int32_t> cells_of_;   // by slot; one more of each known topic
+  std::vector<int32_t> twin_of_;    // by slot: the lowest of its twins when last compared; itself when closed
 
   SurpriseScale surprise_scale_;
 

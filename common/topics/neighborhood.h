@@ -3,12 +3,12 @@
 
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <span>
 #include <unordered_map>
 #include <vector>
 
-#include "shoal/topics/steady_vector.h"
 #include "shoal/world/ids.h"
 
 namespace shoal::topics {
@@ -57,7 +57,7 @@ class Neighborhood {
   void link(int32_t a, int32_t b);
 
   std::unordered_map<world::CellIndex, Cube, world::CellHash> cubes_;  // looked up, never iterated
-  SteadyVector<Links> links_;
+  std::deque<Links> links_;
 };
 
 }  // namespace shoal::topics

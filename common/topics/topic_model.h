@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <span>
 #include <vector>
@@ -12,7 +13,6 @@
 #include "shoal/topics/known_topics.h"
 #include "shoal/topics/learner.h"
 #include "shoal/topics/neighborhood.h"
-#include "shoal/topics/steady_vector.h"
 #include "shoal/topics/surprise_scale.h"
 #include "shoal/world/words_in_cells.h"
 
@@ -142,7 +142,7 @@ class TopicModel final : public Learner {
   const uint64_t cell_stream_;  // of random numbers
   Gibbs gibbs_;
   Neighborhood neighborhood_;
-  SteadyVector<Cell> cells_;          // by number, as in neighborhood_
+  std::deque<Cell> cells_;            // by number, as in neighborhood_
   std::vector<int32_t> cell_counts_;  // n_ck, one row of gibbs_.stride() a cell
   std::vector<float> neighbor_counts_;
   std::vector<Marks> marks_;  // by number
