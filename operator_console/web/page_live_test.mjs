@@ -113,8 +113,11 @@ try {
   await lid.goto(`http://127.0.0.1:${radio.address().port}/`);
   await until(async () => (await text("#legend", lid)).includes("sand & <b>rubble</b>"), "the laptop shows the mission");
   const second = await page.evaluate(() => document.querySelectorAll("#legend .name")[1].dataset.label);
+  const radioOff = () => { for (const line of lines) { line.isDead = true; line.far.destroy(); } };
+  radioOff();
+  await new Promise((resolve) => setTimeout(resolve, 500)); // what came before is read, not on waking
   process.kill(-laptop.process().pid, "SIGSTOP");
-  for (const line of lines) { line.isDead = true; line.far.destroy(); }
+  radioOff(); // a line that it began meanwhile
   await command("name", second, "dark mud", "--node", state, "--json");
   await until(async () => (await text("#legend")).includes("dark mud"), "who is awake hears of it");
   await new Promise((resolve) => setTimeout(resolve, 31000));
