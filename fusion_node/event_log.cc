@@ -80,8 +80,11 @@ void EventLog::heard(const std::string& name, const wire::Heartbeat& h) {
   }
   if (!is_newer) return;
   if (h.phase != node.last.phase) {
-    if (h.phase == wire::Phase::kLanded)
+    const bool has_landed = h.phase == wire::Phase::kListening || h.phase == wire::Phase::kLanded;
+    if (has_landed && node.last.phase == wire::Phase::kFlying)
       add(at_s, "landed", name, fmt::format("after image {}", h.observation + 1));
+    if (h.phase == wire::Phase::kLanded && node.last.phase == wire::Phase::kListening)
+      add(at_s, "looked", name, "looked again at its map, with what all have learnt");
     if (h.phase == wire::Phase::kLeaving) add(at_s, "leaving", name, "ends in good order");
   }
   node.last = h;

@@ -30,6 +30,8 @@ std::string_view phaseName(wire::Phase phase) {
       return "leaving";
     case wire::Phase::kNode:
       return "node";
+    case wire::Phase::kListening:
+      return "listening";
   }
   return "unknown";
 }

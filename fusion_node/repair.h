@@ -29,6 +29,8 @@ class StateHoldings final : public comms::Holdings {
   StateHoldings(const MissionState& state, std::string node, bool patient)
       : state_(state), node_(std::move(node)), patient_(patient) {}
 
+  void setPatient(bool patient) { patient_ = patient; }
+
   const comms::DigestTree& treeOf(int32_t share) override;
   bool isDoubted(int32_t share) override;
   bool isStillSaid(int32_t share) override;
@@ -89,6 +91,9 @@ class Repair {
 
   /// Offers what is due. To be called before Sender::pump(); returns when there may be more, > now_us.
   int64_t pump(int64_t now_us);
+
+  /// While it is wanted a node that does not fuse asks for all that it lacks, as one that does.
+  void wantAll(bool wanted) { holdings_.setPatient(!options_.fuses && !wanted); }
 
   /// Asks for a piece, in this version or a newer one, until it is heard or a few askings have been in vain.
   void ask(const mapping::PieceKey& key, int32_t part, const world::Version& version);

@@ -42,7 +42,7 @@ double furthestClock(const Nodes& nodes) {
 }  // namespace
 
 bool hasLanded(const wire::Heartbeat& robot) {
-  return robot.phase == wire::Phase::kLanded || robot.phase == wire::Phase::kLeaving;
+  return robot.phase != wire::Phase::kFlying && robot.phase != wire::Phase::kNode;
 }
 
 std::vector<std::string> disagreements(const Nodes& nodes) {
@@ -53,6 +53,8 @@ std::vector<std::string> disagreements(const Nodes& nodes) {
     if (isRobot(node)) {
       robots = true;
       if (!hasLanded(node.second)) lines.push_back(node.first + " has not landed");
+      if (node.second.phase == wire::Phase::kListening)
+        lines.push_back(node.first + " has yet to look again at its map");
     }
     if (!fuses(node.second)) continue;
     if (first == nullptr) first = &node;

@@ -14,8 +14,9 @@ namespace shoal::console {
 bool hasLanded(const wire::Heartbeat& robot);
 
 /// What keeps the nodes of a mission from agreeing, from the last heartbeat of each: robots that have not
-/// landed, nodes that fuse and do not hold all that a robot has, have not fused what they hold, or hold
-/// another state or another map than the first of them. One line an item; empty when all agree.
+/// landed or have yet to look again at their map, nodes that fuse and do not hold all that a robot has, have
+/// not fused what they hold, or hold another state or another map than the first of them. One line an item;
+/// empty when all agree.
 std::vector<std::string> disagreements(const std::map<std::string, wire::Heartbeat>& nodes);
 
 /// Follows the heartbeats of a mission and says when it came to agree.

@@ -136,8 +136,8 @@ void addEditCommands(CLI::App& app, Action& chosen) {
   const auto kind = std::make_shared<std::string>();
   addWhere(*happened, q->asking);
   happened->add_option("--kind", *kind, "only these")
-      ->check(CLI::IsMember({"joined", "landed", "leaving", "again", "lost", "back", "twin", "refused",
-                             "mission", "label", "edit"}));
+      ->check(CLI::IsMember({"joined", "landed", "looked", "leaving", "again", "lost", "back", "twin",
+                             "refused", "mission", "label", "edit"}));
   happened->footer(
       "Labels stand at the time when their oldest topic was opened. A run that was flown without --record "
       "knows\n"

@@ -83,6 +83,8 @@ std::string finishRun(const RunInfo& run) {
       {"cell_size_m", options.cell_size_m},
       {"altitude_m", options.altitude_m},
       {"frame_period_s", options.frame_period_s},
+      {"profile", options.profile},
+      {"looks_again", options.looks_again},
       {"matching",
        {{"matcher", options.matcher.matcher},
         {"similarity", options.matcher.similarity},

@@ -64,6 +64,8 @@ void addLaunchCommand(CLI::App& app, Action& chosen) {
       ->add_option("--detail", o.detail,
                    "of topics and certainties on the link: fine, or coarse for fewer bytes")
       ->capture_default_str();
+  command->add_flag("!--no-look-again", o.looks_again,
+                    "robots do not look again at their maps, when all have landed, with what the team knows");
   command->add_option("--cell-size-m", o.cell_size_m, "edge of a cell, m (default: the world's)");
   command->add_option("--camera", o.camera, "camera.json with the intrinsics (default: the world's usual)");
   command->add_option(

@@ -23,6 +23,7 @@ struct LaunchOptions {
   std::string profile = "best";
   std::string bootstrap;        ///< topics.json to begin with; empty: none
   std::string detail = "fine";  ///< of topics and certainties on the link: fine or coarse
+  bool looks_again = true;      ///< robots at their maps, when all have landed
   matching::MatcherOptions matcher = matching::usualMatcher();
   double cell_size_m = 0;  ///< 0 = the world's own
   double altitude_m = 0;   ///< 0 = native resolution

@@ -89,6 +89,7 @@ Command robotCommand(const LaunchOptions& options, int robot, int epoch, double 
   append(arguments, flightArguments(options));
   append(arguments, linkArguments(options));
   append(arguments, {"--out", options.out, "--linger", "--checkpoint", checkpointDir(options)});
+  if (!options.looks_again) arguments.push_back("--no-look-again");
   append(arguments, {"--epoch", std::to_string(epoch), "--start-s", text(start_s)});
   return {name, programBeside("robot_agent"), arguments, logPath(options, name), start_s > 0};
 }

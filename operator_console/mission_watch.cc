@@ -98,6 +98,8 @@ std::vector<std::string> MissionWatch::lacking() const {
       lacking.push_back(name + " was not heard");
     } else if (!hasLanded(*robot)) {
       lacking.push_back(name + " has not landed");
+    } else if (robot->phase == wire::Phase::kListening) {
+      lacking.push_back(name + " has yet to look again at its map");
     }
   }
   const wire::Heartbeat* home = find(kOperator);

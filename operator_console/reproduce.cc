@@ -204,13 +204,9 @@ class Experiment {
   // The first repeat's maps, each beside the truth.
   void drawMaps(const eval::TeamWords& words) {
     mapping::BeliefStore store;
-    for (size_t i = 0; i < words.robots.size(); ++i) {
-      demandNotStopped();
-      const auto all = static_cast<int32_t>(words.robots[i].size());
-      const auto belief = eval::learn(words.robots[i], world::RobotId{static_cast<int32_t>(i)},
-                                      words.cell_size_m, learning(0), std::span(&all, 1));
-      for (const mapping::Piece& piece : mapping::wholePieces(belief[0])) store.apply(piece);
-    }
+    demandNotStopped();
+    for (const mapping::LocalBelief& belief : eval::flyTeam(words, learning(0)))
+      for (const mapping::Piece& piece : mapping::wholePieces(belief)) store.apply(piece);
     const TruthPicture truth{place_->classes(), words.truthOfCell()};
     for (const matching::MatcherOptions& m : matchers_) {
       const bool shown = m.matcher == "id" || (m.matcher == "hungarian" && m.similarity == "l2") ||

@@ -7,16 +7,19 @@
 #include <chrono>
 #include <thread>
 
+#include <spdlog/fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
 #include "fusion_node/picture_files.h"
 #include "fusion_node/process.h"
+#include "robot_agent/roll_call.h"
 #include "shoal/comms/channels.h"
 #include "shoal/cpu_time.h"
 #include "shoal/mapping/atomic_file.h"
 #include "shoal/mapping/belief_files.h"
 #include "shoal/mapping/held_pictures.h"
 #include "shoal/mapping/map_files.h"
+#include "shoal/robot/team_topics.h"
 #include "shoal/wire/piece_codec.h"
 #include "shoal/wire/repair_codec.h"
 
@@ -95,6 +98,8 @@ int64_t wallMs() {
       .count();
 }
 
+double wallSeconds() { return static_cast<double>(wallMs()) * 1e-3; }
+
 int64_t wallUs() {
   return std::chrono::duration_cast<std::chrono::microseconds>(
              std::chrono::system_clock::now().time_since_epoch())
@@ -157,11 +162,14 @@ Agent::Agent(const AgentOptions& options, world::ObservationSource& source, comm
 
 void Agent::run() {
   fly();
+  if (!stopRequested()) awaitTeam();
+  if (!stopRequested()) lookAgain();
   write();
   if (!stopRequested()) linger();
   while (isHolding() || saving_.isRunning()) lookAtSave(true);
   if (options_.fuse) write();  // with the map as it ended
   phase_ = wire::Phase::kLeaving;
+  passTimeUntil(sender_.heartbeatDue());  // or it would seem lost
   sender_.pump(clock_.now());
   for (const auto& [reason, count] : sender_.stats().rejected)
     spdlog::warn("refused {} messages: {}", count, reason);
@@ -200,10 +208,45 @@ void Agent::fly() {
   save();
   while (isHolding()) lookAtSave(true);  // who has landed has said all it has, if only to its queue
   if (stopRequested()) return;
-  phase_ = wire::Phase::kLanded;
+  phase_ = willLookAgain() ? wire::Phase::kListening : wire::Phase::kLanded;
   spdlog::info("landed after {} observations: {} topics, {} cells, {:.1f} ms each", path_.size(),
                belief_.topics.size(), belief_.cells.size(),
                path_.empty() ? 0.0 : total_ms_ / static_cast<double>(path_.size()));
+}
+
+// Tells what is still to be told, and hears what others had to tell when they had landed.
+void Agent::awaitTeam() {
+  if (!willLookAgain()) return;
+  RollCall roll_call(options_.explorer.robot, options_.team_size, wallSeconds());
+  repair_.wantAll(true);
+  for (bool said = false; !stopRequested(); said = true) {
+    roll_call.look(others_, wallSeconds());
+    const std::vector<std::string> missing = roll_call.missing(wallSeconds());
+    if (missing.empty()) break;
+    if (!said)
+      spdlog::info("waits for {}, to look again at its map with what they know", fmt::join(missing, ", "));
+    passSecond();
+  }
+  repair_.wantAll(false);
+  for (const std::string& robot : roll_call.silent(wallSeconds()))
+    spdlog::warn("waits no more for {}, which is silent", robot);
+}
+
+void Agent::lookAgain() {
+  if (willLookAgain()) {
+    const double start_ms = threadCpuMs();
+    const auto team = robot::teamTopics(others_.beliefs(), options_.explorer.robot, options_.matcher);
+    if (!team.others.empty()) {
+      explorer_.lookAgain(team);
+      publishAll();
+      lookAtSave(true);
+      save();
+      while (isHolding()) lookAtSave(true);
+      spdlog::info("looked again with {} topics of others, {:.1f} ms", team.others.size(),
+                   threadCpuMs() - start_ms);
+    }
+  }
+  phase_ = wire::Phase::kLanded;
 }
 
 // Sends and listens meanwhile. Mission time as fast as possible does not pass: only observations move it.
@@ -297,9 +340,11 @@ void Agent::say(const mapping::Piece& part, wire::Bytes message) {
   offer(part, std::move(message));
 }
 
-// What a live source has shown it will not show again: then after a crash the robot would say other things.
+// What a live source has shown it will not show again, and others may be silent the next time: then after a
+// crash the robot would say other things.
 void Agent::sayWhenSaved(const mapping::Piece& part, wire::Bytes message) {
-  if (!options_.live || options_.checkpoint_dir.empty()) return say(part, std::move(message));
+  const bool can_say_it_again = !options_.live && !explorer_.hasLookedAgain();
+  if (can_say_it_again || options_.checkpoint_dir.empty()) return say(part, std::move(message));
   unsaid_.insert_or_assign(queueKey(part.key, part.part), wire::EncodedPart{part, std::move(message)});
 }
 
@@ -447,7 +492,7 @@ void Agent::listen(int timeout_ms) {
     others_.hear(packet, sender_.stats());
     repair_.hear(packet, clock_.now());
   });
-  if (phase_ == wire::Phase::kLanded) sharpenWanted();
+  if (phase_ != wire::Phase::kFlying) sharpenWanted();
   if (const auto warning = silence_.check(wallMs())) spdlog::warn("{}", *warning);
   if (options_.fuse && phase_ != wire::Phase::kFlying) others_.refresh();
   for (; warned_of_missions_ < others_.otherMissions().size(); ++warned_of_missions_) {
@@ -463,18 +508,21 @@ void Agent::listen(int timeout_ms) {
 
 void Agent::linger() {
   while (!stopRequested()) {
-    const auto start = std::chrono::steady_clock::now();
-    passTimeUntil(clock_.now() + kSecondUs);
+    passSecond();
     const bool busy = sender_.queue().waitingBytes() > 0 || isHolding();
-    const bool heard = !busy && isHeard();
-    if (!options_.linger && heard) {
-      spdlog::info("a fusion node holds all that {} had to say", name_);
-      return;
-    }
-    if (options_.rate == 0) {
-      std::this_thread::sleep_until(start + (busy ? kBusySecond : heard ? kHeardSecond : kIdleSecond));
-    }
+    if (options_.linger || busy || !isHeard()) continue;
+    spdlog::info("a fusion node holds all that {} had to say", name_);
+    return;
   }
+}
+
+// One of mission time. As fast as possible it still takes a while, so that others get to listen.
+void Agent::passSecond() {
+  const auto start = std::chrono::steady_clock::now();
+  passTimeUntil(clock_.now() + kSecondUs);
+  if (options_.rate != 0) return;
+  const bool busy = sender_.queue().waitingBytes() > 0 || isHolding();
+  std::this_thread::sleep_until(start + (busy ? kBusySecond : isHeard() ? kHeardSecond : kIdleSecond));
 }
 
 bool Agent::isHeard() const {
@@ -513,7 +561,7 @@ comms::Packet Agent::heartbeat(int64_t now_us) {
   h.mission = options_.mission;
   h.epoch = options_.explorer.epoch;
   h.phase = phase_;
-  h.observation = path_.empty() ? -1 : belief_.version.observation;
+  h.observation = path_.empty() ? -1 : belief_.version.observation - (explorer_.hasLookedAgain() ? 1 : 0);
   h.num_observations = source_.numObservations().value_or(0);
   h.num_topics = static_cast<int32_t>(belief_.topics.size());
   h.num_cells = explorer_.numCells();

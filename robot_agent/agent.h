@@ -43,8 +43,10 @@ struct AgentOptions {
   int64_t start_us = 0;   ///< mission time at which the flight begins: later after a restart
   double rate = 1.0;      ///< seconds of mission time per wall second, 0 = as fast as possible
   bool fuse = false;      ///< hold everybody's beliefs and fuse them too
-  matching::MatcherOptions matcher = matching::usualMatcher();  ///< for `fuse`
+  matching::MatcherOptions matcher = matching::usualMatcher();  ///< for `fuse` and to look again
   std::string out_dir;                                          ///< where robots/RNN/ goes; empty = nowhere
+  int32_t team_size = 1;                         ///< robots to wait for after landing, heard or not
+  bool looks_again = true;                       ///< at its map after landing, by what the team knows
   bool linger = false;                           ///< stay after landing until told to stop, heard or not
   std::string checkpoint_dir;                    ///< where checkpoints go; empty = nowhere
   std::optional<Checkpoint> resume;              ///< what to go on from, of this mission, robot and epoch
@@ -52,7 +54,10 @@ struct AgentOptions {
   std::function<void(const ImageTimes&)> watch;  ///< told after each image, to measure; may be empty
 };
 
-/// One robot: flies its source, learns, tells the others under its budget, and listens.
+/// One robot: flies its source, learns, tells the others under its budget, and listens. When all of the team
+/// have landed it looks at its map again, by what the team knows (robot/team_topics.h), and tells what it now
+/// takes for something else: so what it tells in the end is a function of what all have learnt, whenever it
+/// heard of it.
 class Agent {
  public:
   /// `source` and `bus` outlive the agent.
@@ -66,6 +71,11 @@ class Agent {
 
  private:
   void fly();
+  void awaitTeam();
+  bool willLookAgain() const {
+    return options_.looks_again && explorer_.canLookAgain() && !explorer_.hasLookedAgain() && !path_.empty();
+  }
+  void lookAgain();
   void awaitObservation();
   void linger();
   void resume();
@@ -85,6 +95,7 @@ class Agent {
   void offer(const mapping::Piece& part, wire::Bytes message);
   void sharpenWanted();
   void passTimeUntil(int64_t to_us);
+  void passSecond();
   void listen(int timeout_ms);
   bool isHeard() const;
   std::optional<comms::Packet> join(std::span<const comms::SendQueue::Next> together) const;

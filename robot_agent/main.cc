@@ -164,6 +164,7 @@ int run(Flags flags) {
   options.rate = fusion_node::parseRate(flags.rate);
   options.start_us = std::llround(flags.start_s * 1e6);
   options.live = isLive(flags);
+  options.team_size = flags.survey.num_robots;
   if (!flags.checkpoint.empty()) resume(flags, *id);
   options.matcher.sigma = matching::parseSigma(flags.sigma);
   if (!flags.bootstrap.empty()) {
@@ -217,7 +218,8 @@ int main(int argc, char** argv) {
                  "reef:sparse, reef:varied, reef:tuning, a world folder, a recording, or lcm:PREFIX (a real "
                  "robot's cameras)")
       ->required();
-  app.add_option("--robots", f.survey.num_robots, "robots that share the area; robot k flies share k")
+  app.add_option("--robots", f.survey.num_robots,
+                 "robots that share the area; robot k flies share k, and waits for all after landing")
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();
   app.add_option("--observations", f.survey.observations, "images to take, 0 = as many as cover the share")
@@ -280,12 +282,13 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--out", f.agent.out_dir, "folder for robots/RNN/{map.csv,topics.json,poses.txt}");
   app.add_flag("--fuse", f.agent.fuse, "hold everybody's beliefs and fuse them on board too");
-  auto* matcher =
-      app.add_option("--matcher", f.agent.matcher.matcher, "for --fuse: id, hungarian, clear or shoal");
+  auto* matcher = app.add_option("--matcher", f.agent.matcher.matcher,
+                                 "for --fuse and to look again: id, hungarian, clear or shoal");
   auto* similarity = app.add_option("--similarity", f.agent.matcher.similarity,
-                                    "for --fuse: cosine, overlap, l1, l2 or discounted");
-  app.add_option("--sigma", f.sigma,
-                 "for --fuse: least similarity of a match: auto (the matcher's usual) or a number in (0, 1]")
+                                    "of --matcher: cosine, overlap, l1, l2 or discounted");
+  app.add_option(
+         "--sigma", f.sigma,
+         "of --matcher: least similarity of a match: auto (the matcher's usual) or a number in (0, 1]")
       ->capture_default_str();
   app.add_option("--epoch", f.agent.explorer.epoch,
                  "how often this robot has begun anew: what it said in earlier epochs is void")
@@ -296,6 +299,8 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_flag("!--no-pictures", f.agent.explorer.keeps_pictures,
                "keep and send no pictures of what topics look like");
+  app.add_flag("!--no-look-again", f.agent.looks_again,
+               "when all have landed do not look again at the map with what the team knows");
   app.add_flag("--linger", f.agent.linger, "stay after landing until told to stop");
   app.add_flag("--single", f.single, "fly everybody's shares alone, off the link, into --out itself");
   app.add_option("--checkpoint", f.checkpoint,

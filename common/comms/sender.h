@@ -67,6 +67,9 @@ class Sender {
   /// who pump once a second get little more than half of it. May sleep, to pace in wall time.
   int64_t pump(int64_t now_us);
 
+  /// When the next heartbeat may go.
+  int64_t heartbeatDue() const { return heartbeat_.dueAt(); }
+
   /// Sends at once on the local bus: class local, paced in wall time, outside the budget.
   void sendLocal(const Packet& packet);
 

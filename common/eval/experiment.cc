@@ -20,14 +20,29 @@ constexpr uint64_t kOrderStream = 0x6f72646572;  // "order"
 // Beliefs of every robot at every checkpoint: [robot][checkpoint].
 using Beliefs = std::vector<std::vector<mapping::LocalBelief>>;
 
-Beliefs learnAll(const TeamWords& words, const LearningOptions& learning,
-                 const std::vector<int32_t>& checkpoints) {
+struct Flown {
   Beliefs beliefs;
+  std::vector<Landed> landed;  // by robot
+};
+
+Flown flyAll(const TeamWords& words, const LearningOptions& learning,
+             const std::vector<int32_t>& checkpoints) {
+  Flown flown;
   for (size_t i = 0; i < words.robots.size(); ++i) {
-    beliefs.push_back(learn(words.robots[i], world::RobotId{static_cast<int32_t>(i)}, words.cell_size_m,
-                            learning, checkpoints));
+    std::vector<uint8_t> mind;
+    flown.beliefs.push_back(learn(words.robots[i], world::RobotId{static_cast<int32_t>(i)}, words.cell_size_m,
+                                  learning, checkpoints, &mind));
+    flown.landed.push_back({flown.beliefs.back().back(), std::move(mind)});
   }
-  return beliefs;
+  return flown;
+}
+
+// Of a team of these robots that has landed.
+std::vector<mapping::LocalBelief> inTheEnd(const Flown& flown, std::span<const size_t> robots,
+                                           double cell_size_m, const LearningOptions& learning) {
+  std::vector<const Landed*> team;
+  for (const size_t robot : robots) team.push_back(&flown.landed[robot]);
+  return lookAgain(team, cell_size_m, learning);
 }
 
 std::vector<mapping::LocalBelief> pick(const Beliefs& beliefs, std::span<const size_t> robots,
@@ -80,14 +95,17 @@ Repeat runRepeat(const TeamWords& words, const RepeatOptions& options) {
     const auto at = static_cast<int32_t>((images * static_cast<size_t>(tenth) + 9) / 10);
     if (checkpoints.empty() || checkpoints.back() < at) checkpoints.push_back(at);
   }
-  const Beliefs beliefs = learnAll(words, options.learning, checkpoints);
-  const size_t last = checkpoints.size() - 1;
+  const Flown flown = flyAll(words, options.learning, checkpoints);
   std::vector<size_t> everyone(words.robots.size());
   std::iota(everyone.begin(), everyone.end(), size_t{0});
 
   Repeat result;
+  const auto in_the_end = [&](std::span<const size_t> robots) {
+    return inTheEnd(flown, robots, words.cell_size_m, options.learning);
+  };
+  const std::vector<mapping::LocalBelief> whole_team = in_the_end(everyone);
   {
-    const Stacked team = stackTeam(pick(beliefs, everyone, last));
+    const Stacked team = stackTeam(whole_team);
     const TeamTally newest = tally(team.beliefs, truth, FusionRule::kNewestWins);
     for (const matching::MatcherOptions& m : options.matchers) {
       const std::vector<int> labels = labelsOf(team, newest, m);
@@ -100,7 +118,9 @@ Repeat runRepeat(const TeamWords& words, const RepeatOptions& options) {
     result.purity = purity(newest);
   }
   for (size_t c = 0; c < checkpoints.size(); ++c) {
-    result.by_images.push_back(point(checkpoints[c], pick(beliefs, everyone, c), truth, options.matchers));
+    const bool has_landed = c + 1 == checkpoints.size();
+    result.by_images.push_back(point(
+        checkpoints[c], has_landed ? whole_team : pick(flown.beliefs, everyone, c), truth, options.matchers));
   }
 
   std::vector<int32_t> parts;  // the single robot's images after 1, 2, ... shares
@@ -115,8 +135,8 @@ Repeat runRepeat(const TeamWords& words, const RepeatOptions& options) {
 
   const std::vector<size_t> order = shuffled(words.robots.size(), options.learning.seed);
   for (size_t n = 1; n <= order.size(); ++n) {
-    result.by_robots.push_back(point(static_cast<int32_t>(n), pick(beliefs, std::span(order).first(n), last),
-                                     truth, options.matchers));
+    result.by_robots.push_back(
+        point(static_cast<int32_t>(n), in_the_end(std::span(order).first(n)), truth, options.matchers));
     result.by_robots.back().single = scoreAlone(alone[n - 1], truth).ami;
   }
   if (options.exchange_every > 0) {
@@ -138,16 +158,15 @@ Repeat runRepeat(const TeamWords& words, const RepeatOptions& options) {
   return result;
 }
 
+std::vector<mapping::LocalBelief> flyTeam(const TeamWords& words, const LearningOptions& learning) {
+  std::vector<size_t> everyone(words.robots.size());
+  std::iota(everyone.begin(), everyone.end(), size_t{0});
+  return inTheEnd(flyAll(words, learning, {INT32_MAX}), everyone, words.cell_size_m, learning);
+}
+
 std::vector<Score> scoreTeam(const TeamWords& words, const LearningOptions& learning,
                              const std::vector<matching::MatcherOptions>& matchers) {
-  std::vector<mapping::LocalBelief> team;
-  for (size_t i = 0; i < words.robots.size(); ++i) {
-    const auto all = static_cast<int32_t>(words.robots[i].size());
-    team.push_back(learn(words.robots[i], world::RobotId{static_cast<int32_t>(i)}, words.cell_size_m,
-                         learning, std::span(&all, 1))
-                       .front());
-  }
-  const Stacked stacked = stackTeam(std::move(team));
+  const Stacked stacked = stackTeam(flyTeam(words, learning));
   return scoreAll(stacked, tally(stacked.beliefs, words.truthOfCell(), FusionRule::kNewestWins), matchers);
 }
 

@@ -50,6 +50,9 @@ struct Repeat {
 /// in; the whole team is scored in the order of its numbers, as a launched mission is.
 Repeat runRepeat(const TeamWords& words, const RepeatOptions& options);
 
+/// What the robots of the team believe when all have landed and looked again.
+std::vector<mapping::LocalBelief> flyTeam(const TeamWords& words, const LearningOptions& learning);
+
 /// AMI by matcher of a team alone: for areas cut into more or fewer shares.
 std::vector<Score> scoreTeam(const TeamWords& words, const LearningOptions& learning,
                              const std::vector<matching::MatcherOptions>& matchers);

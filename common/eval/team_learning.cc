@@ -12,6 +12,7 @@
 #include "shoal/mapping/belief_store.h"
 #include "shoal/mapping/stacked_topics.h"
 #include "shoal/robot/explorer.h"
+#include "shoal/robot/team_topics.h"
 #include "shoal/wire/limits.h"
 
 namespace shoal::eval {
@@ -31,7 +32,8 @@ robot::Explorer explorer(world::RobotId robot, double cell_size_m, const Learnin
 
 std::vector<mapping::LocalBelief> learn(const std::vector<world::WordsInCells>& images, world::RobotId robot,
                                         double cell_size_m, const LearningOptions& options,
-                                        std::span<const int32_t> checkpoints) {
+                                        std::span<const int32_t> checkpoints,
+                                        std::vector<uint8_t>* const last) {
   robot::Explorer mind = explorer(robot, cell_size_m, options);
   std::vector<mapping::LocalBelief> beliefs;
   size_t learnt = 0;
@@ -39,6 +41,25 @@ std::vector<mapping::LocalBelief> learn(const std::vector<world::WordsInCells>& 
     for (; learnt < std::min(images.size(), static_cast<size_t>(checkpoint)); ++learnt)
       mind.learn(images[learnt]);
     beliefs.push_back(mind.belief());
+  }
+  if (last != nullptr) *last = mind.checkpoint();
+  return beliefs;
+}
+
+std::vector<mapping::LocalBelief> lookAgain(std::span<const Landed* const> team, double cell_size_m,
+                                            const LearningOptions& options) {
+  std::vector<mapping::LocalBelief> beliefs;
+  for (const Landed* robot : team) beliefs.push_back(robot->belief);
+  if (team.size() < 2 || !options.looks_again) return beliefs;
+  mapping::BeliefStore heard;
+  for (const mapping::LocalBelief& belief : beliefs)
+    for (const mapping::Piece& piece : mapping::wholePieces(belief)) heard.apply(piece);
+  for (size_t i = 0; i < team.size(); ++i) {
+    robot::Explorer mind = explorer(beliefs[i].robot, cell_size_m, options);
+    if (!mind.canLookAgain()) break;
+    mind.restore(team[i]->mind);
+    mind.lookAgain(robot::teamTopics(heard, beliefs[i].robot, matching::usualMatcher()));
+    beliefs[i] = mind.belief();
   }
   return beliefs;
 }

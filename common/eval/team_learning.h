@@ -22,13 +22,28 @@ struct LearningOptions {
   std::string profile = "paper";
   uint64_t seed = 1;                                              ///< mission seed
   std::optional<topics::LearnerHyperparameters> hyperparameters;  ///< other than the profile's
+  bool looks_again = true;  ///< robots that can look again at their maps when the team has landed
 };
 
 /// What one robot believes after `checkpoints[i]` images (ascending; more than there are = all), one belief a
-/// checkpoint. The last one equals the map.csv and topics.json of the robot_agent that flew the same images.
+/// checkpoint. The last one equals the map.csv and topics.json of the robot_agent that flew the same images
+/// and did not look again.
+/// @param mind  Out, unless null: Explorer::checkpoint() after the last.
 std::vector<mapping::LocalBelief> learn(const std::vector<world::WordsInCells>& images, world::RobotId robot,
                                         double cell_size_m, const LearningOptions& options,
-                                        std::span<const int32_t> checkpoints);
+                                        std::span<const int32_t> checkpoints,
+                                        std::vector<uint8_t>* mind = nullptr);
+
+/// A robot that has landed: what it believes, and its mind.
+struct Landed {
+  mapping::LocalBelief belief;
+  std::vector<uint8_t> mind;
+};
+
+/// What the robots of a team believe when they have looked again at their maps, as robot_agent does; what
+/// they believed before with a profile that does not, or when not asked to.
+std::vector<mapping::LocalBelief> lookAgain(std::span<const Landed* const> team, double cell_size_m,
+                                            const LearningOptions& options);
 
 /// What a robot sends in a mission without losses: the changes of its belief after every fifth image and the
 /// last, all at once, where robot_agent tells a fifth of them with every image.

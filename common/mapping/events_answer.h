@@ -15,7 +15,7 @@ namespace shoal::mapping {
 /// Something that happened to a node of a mission, as one listener saw it.
 struct MissionEvent {
   double at_s = 0;   ///< mission time
-  std::string kind;  ///< joined, landed, leaving, again, lost, back, twin, refused, mission
+  std::string kind;  ///< joined, landed, looked, leaving, again, lost, back, twin, refused, mission
   std::string node;  ///< whom it happened to
   std::string says;  ///< for people
   bool operator==(const MissionEvent&) const = default;

@@ -19,7 +19,7 @@ namespace shoal::mapping {
 /// What is known of one process of a mission, as its last heartbeat told it.
 struct NodeStatus {
   std::string name;              ///< "R03", "OPERATOR"
-  std::string phase;             ///< "flying", "landed", "leaving", "node"
+  std::string phase;             ///< "flying", "listening", "landed", "leaving", "node"
   double heard_s = 0;            ///< mission time of its last heartbeat
   int32_t observation = -1;      ///< its latest image, -1 = none yet
   int32_t num_observations = 0;  ///< of its whole stream, 0 = unknown

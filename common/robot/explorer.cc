@@ -71,7 +71,14 @@ void Explorer::learn(const world::WordsInCells& words) {
   }
   times_ = {.words_ms = 0, .topics_ms = watch.lapMs(), .belief_ms = 0, .pictures_ms = 0};
   last_observation_ = words.observation;
+  looked_again_ = false;
   dropped_words_ += words.dropped_words;
+}
+
+void Explorer::lookAgain(const topics::TeamTopics& team) {
+  learner_->lookAgain(team);
+  ++last_observation_;
+  looked_again_ = true;
 }
 
 void Explorer::note(const world::CellIndex& cell) {

@@ -73,6 +73,18 @@ class Explorer final : public mapping::BelievedBricks {
   /// @throws std::invalid_argument unless the robot labels every word, as profile "paper" does.
   std::vector<world::TopicId> adopt(const std::vector<topics::AdoptedTopic>& others);
 
+  /// Judges every cell anew by what the whole team knows, once all have seen what they were to see:
+  /// Learner::lookAgain(). What comes of it is a belief of its own, with a version above that of the last
+  /// image; an image that comes later must have a number above it.
+  /// @throws as Learner::lookAgain(); std::logic_error unless canLookAgain().
+  void lookAgain(const topics::TeamTopics& team);
+
+  /// Robots of profile "best" can.
+  bool canLookAgain() const { return learner_->canLookAgain(); }
+
+  /// Whether it did so and has not learnt since.
+  bool hasLookedAgain() const { return looked_again_; }
+
   /// The whole mind as bytes: topics, labels, what was learnt about the camera, the observation number. An
   /// explorer made with the same options (the epoch apart, which is the caller's) and restored from them goes
   /// on as this one does, byte for byte.
@@ -83,7 +95,8 @@ class Explorer final : public mapping::BelievedBricks {
   ///         an explorer that was made with something else; this one is then as it was.
   void restore(std::span<const uint8_t> checkpoint);
 
-  /// Number of the last observation learnt from, -1 before the first.
+  /// Number of the last observation learnt from, one more when it has looked again since; -1 before the
+  /// first.
   int32_t lastObservation() const { return last_observation_; }
 
   const std::vector<world::WordGroup>& groups() const { return words_->groups(); }
@@ -107,6 +120,7 @@ class Explorer final : public mapping::BelievedBricks {
   std::map<mapping::Brick, std::vector<world::CellIndex>> bricks_;  // ascending
   std::set<mapping::Brick> seen_bricks_;
   int32_t last_observation_ = -1;
+  bool looked_again_ = false;
   int64_t dropped_words_ = 0;
   StageTimes times_;  // measured, never part of a result
 };

@@ -11,7 +11,7 @@ namespace shoal::robot {
 namespace {
 
 const std::string kKind = "shoalEXP";
-constexpr uint32_t kVersion = 2;
+constexpr uint32_t kVersion = 3;
 
 }  // namespace
 
@@ -19,6 +19,7 @@ std::vector<uint8_t> Explorer::checkpoint() const {
   topics::StateWriter out(kKind, kVersion);
   out.u64(fingerprint());
   out.i32(last_observation_);
+  out.u32(looked_again_ ? 1 : 0);
   out.i64(dropped_words_);
   const std::vector<int64_t> camera = words_->learnt();
   out.u64(camera.size());
@@ -34,8 +35,9 @@ void Explorer::restore(std::span<const uint8_t> checkpoint) {
   topics::StateReader in(checkpoint, kKind, kVersion);
   in.demand(in.u64() == fingerprint(), "it is of another profile, cell size, vocabulary or hyper-parameters");
   const int32_t last_observation = in.i32();
+  const uint32_t looked_again = in.u32();
   const int64_t dropped_words = in.i64();
-  in.demand(last_observation >= -1 && dropped_words >= 0, "its counts are out of range");
+  in.demand(last_observation >= -1 && dropped_words >= 0 && looked_again <= 1, "its counts are out of range");
   std::vector<int64_t> camera(in.count(8));
   for (int64_t& number : camera) number = in.i64();
   auto learner = topics::resumeLearner(hyperparameters_, words_->groups(), options_.seed, options_.robot,
@@ -57,6 +59,7 @@ void Explorer::restore(std::span<const uint8_t> checkpoint) {
   for (const topics::CellLabel& c : learner_->snapshot().cells) note(c.cell);
   seen_bricks_.clear();
   last_observation_ = last_observation;
+  looked_again_ = looked_again == 1;
   dropped_words_ = dropped_words;
 }
 

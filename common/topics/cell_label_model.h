@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <span>
 #include <vector>
 
@@ -65,6 +66,15 @@ class CellLabelModel final : public Learner {
 
   /// add(words), then refine(visits_per_cell x its cells, rounded down).
   void observe(const world::WordsInCells& words) override;
+
+  /// By the same conditional, where a topic is as likely as the best of all topics of its label makes it, and
+  /// neighbours vote by what is told of them: first without votes, then so many rounds over all cells with
+  /// them. Own topics of one label are one to it; a cell is told as the likeliest of them, or stays what it
+  /// was told as when that is one. The certainty is that of the label.
+  ///
+  /// Cost: words x (K + topics of others) additions and 8 bytes x labels a cell.
+  bool canLookAgain() const override { return true; }
+  void lookAgain(const TeamTopics& team) override;
 
   /// Puts the words into their cells and draws the label of each of these cells. These draws are not part of
   /// any budget.
@@ -131,6 +141,13 @@ class CellLabelModel final : public Learner {
     world::Timestamp seen;
   };
 
+  // The team's labels that this robot has a topic of, by their numbers here.
+  struct TeamLabels {
+    int32_t count = 0;
+    std::vector<int32_t> of_slot;        // -1: no topic
+    std::map<int32_t, int32_t> of_team;  // by the team's number
+  };
+
   uint64_t identity() const;
   void begin(const std::vector<KnownTopic>& known);
   int32_t cellFor(const world::CellIndex& index);
@@ -140,6 +157,9 @@ class CellLabelModel final : public Learner {
   void tell(int32_t c);
   int32_t toldSlot(const LabelledCell& cell) const;
   CellLabel labelOf(const LabelledCell& cell, const std::vector<int32_t>& told_as) const;
+  TeamLabels labelsOf(const TeamTopics& team) const;
+  void tellAgain(LabelledCell& cell, int32_t label, std::span<const int64_t> log_likelihoods,
+                 const TeamLabels& labels);
   void findTwins();
   void leaveTwins(int32_t slot);
   std::vector<int32_t> toldAs() const;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "shoal/topics/snapshot.h"
+#include "shoal/topics/team_topics.h"
 #include "shoal/world/words_in_cells.h"
 
 namespace shoal::topics {
@@ -21,6 +22,16 @@ class Learner {
   /// @throws std::invalid_argument, leaving the learner as it was, if `words` breaks its contract or its
   ///         observation number is not above the last one's.
   virtual void observe(const world::WordsInCells& words) = 0;
+
+  /// Whether lookAgain() is for this kind of learner.
+  virtual bool canLookAgain() const { return false; }
+
+  /// Judges every cell anew by what the whole team knows: a topic speaks with the words of all topics of its
+  /// label. Changes what is told of cells, and nothing of what is learnt.
+  /// @throws std::invalid_argument for words that the learner does not have; std::logic_error from a learner
+  /// that
+  ///         cannot.
+  virtual void lookAgain(const TeamTopics& team);
 
   /// Topics as exact counts, every cell with its label. It reads everything.
   virtual Snapshot snapshot() const = 0;

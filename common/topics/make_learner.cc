@@ -34,6 +34,10 @@ int32_t sizeOf(const std::vector<world::WordGroup>& groups) {
 
 }  // namespace
 
+void Learner::lookAgain(const TeamTopics&) {
+  throw std::logic_error("this kind of learner does not look again");
+}
+
 std::unique_ptr<Learner> makeLearner(const LearnerHyperparameters& hyperparameters,
                                      const std::vector<world::WordGroup>& groups, uint64_t seed,
                                      world::RobotId robot, const std::vector<KnownTopic>& known) {

@@ -17,7 +17,7 @@ std::string fault(const Heartbeat& h) {
   if (h.time.us < 0 || h.time.us > kMaxTimeUs) return "time is out of range";
   if (h.epoch < 0) return "epoch is negative";
   if (h.observation < -1) return "observation is below -1";
-  if (static_cast<int>(h.phase) > static_cast<int>(Phase::kNode)) return "phase is none of 0 to 3";
+  if (static_cast<int>(h.phase) > static_cast<int>(Phase::kListening)) return "phase is none of 0 to 4";
   if (h.num_topics < 0 || h.num_topics > world::kMaxTopicId + 1) return "num_topics lies outside [0, 10000]";
   for (const int64_t count :
        {int64_t{h.num_observations}, int64_t{h.num_cells}, int64_t{h.pid}, h.bytes_sent, int64_t{h.budget},

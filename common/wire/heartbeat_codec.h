@@ -17,9 +17,10 @@ namespace shoal::wire {
 /// What a node is doing. The numbers are part of the wire format.
 enum class Phase : uint8_t {
   kFlying = 0,
-  kLanded = 1,   ///< its source has ended
-  kLeaving = 2,  ///< about to end in good order
-  kNode = 3      ///< a fusion node: flies nothing
+  kLanded = 1,    ///< its source has ended, and it has told what it makes of it
+  kLeaving = 2,   ///< about to end in good order
+  kNode = 3,      ///< a fusion node: flies nothing
+  kListening = 4  ///< its source has ended; it will look at its map again when all of the team have landed
 };
 
 /// How a node is doing, as it says about once a second. Its channel says who it is.

@@ -23,7 +23,7 @@ using nlohmann::json;
 json arrayOf(const world::CellIndex& c) { return {c.x, c.y, c.z}; }
 
 json fields(const Heartbeat& h) {
-  constexpr std::array kPhases = {"flying", "landed", "leaving", "node"};
+  constexpr std::array kPhases = {"flying", "landed", "leaving", "node", "listening"};
   json j{{"phase", kPhases[static_cast<size_t>(h.phase)]},
          {"epoch", h.epoch},
          {"observation", h.observation},

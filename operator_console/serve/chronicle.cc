@@ -34,10 +34,16 @@ void Chronicle::hear(const mapping::NodeStatus& node) {
   if (is_new) {
     tell(node.heard_s, "joined", node.name + (node.phase == "node" ? " is listening" : " joined"));
   } else if (life.phase != node.phase) {
-    tell(node.heard_s, node.phase,
-         node.name + (node.phase == "landed"    ? " landed"
-                      : node.phase == "leaving" ? " is leaving"
-                                                : " flies again"));
+    const bool has_looked = life.phase == "listening" && node.phase == "landed";
+    tell(node.heard_s,
+         has_looked                  ? "looked"
+         : node.phase == "listening" ? "landed"
+                                     : node.phase,
+         node.name + (has_looked                  ? " has looked again at its map"
+                      : node.phase == "listening" ? " landed"
+                      : node.phase == "landed"    ? " landed"
+                      : node.phase == "leaving"   ? " is leaving"
+                                                  : " flies again"));
   }
   if (node.agreement == "other" && life.agreement != "other")
     tell(node.heard_s, "alarm", node.name + " holds the same state and another map");

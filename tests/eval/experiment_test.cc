@@ -10,7 +10,9 @@
 
 #include "shoal/eval/merging_team.h"
 #include "shoal/eval/word_file.h"
+#include "shoal/mapping/belief_pieces.h"
 #include "shoal/robot/explorer.h"
+#include "shoal/robot/team_topics.h"
 
 namespace shoal::eval {
 namespace {
@@ -70,6 +72,32 @@ TEST_F(ExperimentTest, OneRowIsWhatTheRobotThatFliesAloneSees) {
   // From another share on: the same images in another order.
   EXPECT_EQ(words_->inOneRow(1)[0].cells.size(), words_->robots[1][0].cells.size());
   EXPECT_EQ(words_->inOneRow(1).size(), words_->inOneRow(0).size());
+}
+
+// As robot_agent: each with what all had told when they had landed, and not with what the first made of it.
+TEST_F(ExperimentTest, ATeamLooksAgainWhenItHasLanded) {
+  const LearningOptions best{.profile = "best", .seed = 5, .hyperparameters = {}};
+  const TeamWords seen = lookAround(*place_, 2, survey_, "best", {});
+  LearningOptions once = best;
+  once.looks_again = false;
+  const auto flown = flyTeam(seen, once), looked = flyTeam(seen, best);
+  mapping::BeliefStore heard;
+  for (const mapping::LocalBelief& belief : flown)
+    for (const mapping::Piece& piece : mapping::wholePieces(belief)) heard.apply(piece);
+  for (size_t i = 0; i < flown.size(); ++i) {
+    robot::Explorer mind({.robot = flown[i].robot,
+                          .profile = "best",
+                          .seed = 5,
+                          .cell_size_m = seen.cell_size_m,
+                          .hyperparameters = {}});
+    for (const world::WordsInCells& words : seen.robots[i]) mind.learn(words);
+    EXPECT_EQ(mind.belief().cells, flown[i].cells);
+    mind.lookAgain(robot::teamTopics(heard, flown[i].robot, matching::usualMatcher()));
+    EXPECT_EQ(mind.belief().cells, looked[i].cells);
+    EXPECT_EQ(mind.belief().version, looked[i].version);
+    EXPECT_NE(looked[i].cells, flown[i].cells);
+    EXPECT_EQ(looked[i].topics, flown[i].topics);
+  }
 }
 
 TEST_F(ExperimentTest, TruthIsThatOfTheWholeTeamsFrames) {

@@ -174,6 +174,49 @@ TEST_P(EveryExplorer, RefusesCheckpointsOfOthersAndDamagedOnesAndStaysAsItWas) {
   EXPECT_EQ(explorer.checkpoint(), whole);
 }
 
+// A look takes a number as an image does: what is told of it is newer than what was told of the last image.
+TEST(ExplorerTest, ALookAtItsMapIsABeliefOfItsOwn) {
+  ExplorerOptions o = options();
+  o.profile = "best";
+  const auto images = twoImages();
+  Explorer explorer(o);
+  explorer.observe(images[0]);
+  const mapping::LocalBelief before = explorer.belief();
+  ASSERT_GE(before.topics.size(), 2u);
+  topics::TeamTopics team;
+  for (const mapping::BelievedTopic& topic : before.topics) team.own[topic.id] = number(topic.id);
+  for (const mapping::BelievedTopic& topic : before.topics)  // each knows the words of the next
+    team.others.push_back({team.own.at(before.topics.front().id), topic.words});
+  ASSERT_TRUE(explorer.canLookAgain());
+  EXPECT_FALSE(explorer.hasLookedAgain());
+  explorer.lookAgain(team);
+  EXPECT_TRUE(explorer.hasLookedAgain());
+  const mapping::LocalBelief after = explorer.belief();
+  EXPECT_EQ(after.version.observation, before.version.observation + 1);
+  EXPECT_EQ(explorer.lastObservation(), after.version.observation);
+  EXPECT_EQ(after.topics, before.topics);
+  EXPECT_NE(after.cells, before.cells);
+
+  Explorer resumed(o);
+  resumed.restore(explorer.checkpoint());
+  EXPECT_TRUE(resumed.hasLookedAgain());
+  EXPECT_EQ(resumed.belief().cells, after.cells);
+  EXPECT_EQ(resumed.belief().version, after.version);
+
+  world::Observation next = images[1];
+  next.number = 5;
+  resumed.observe(next);
+  EXPECT_FALSE(resumed.hasLookedAgain());
+  EXPECT_EQ(resumed.belief().version.observation, 5);
+}
+
+TEST(ExplorerTest, ARobotThatLabelsWordsDoesNotLookAgain) {
+  Explorer explorer(options());
+  EXPECT_FALSE(explorer.canLookAgain());
+  EXPECT_THROW(explorer.lookAgain({}), std::logic_error);
+  EXPECT_FALSE(explorer.hasLookedAgain());
+}
+
 TEST(ExplorerTest, OnlyARobotThatLabelsWordsAdoptsTopics) {
   ExplorerOptions cells = options();
   cells.profile = "best";

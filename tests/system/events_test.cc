@@ -43,6 +43,15 @@ TEST(EventLogTest, TellsWhatHappensToANode) {
   EXPECT_EQ(kinds(log), (std::vector<std::string>{"joined", "lost", "back", "landed", "again", "leaving"}));
 }
 
+TEST(EventLogTest, ARobotLandsOnceAndLooksAgain) {
+  EventLog log;
+  log.heard("R01", at(1));
+  log.heard("R01", at(2, wire::Phase::kListening));
+  log.heard("R01", at(3, wire::Phase::kListening));
+  log.heard("R01", at(4, wire::Phase::kLanded));
+  EXPECT_EQ(kinds(log), (std::vector<std::string>{"joined", "landed", "looked"}));
+}
+
 TEST(EventLogTest, OnAThinBudgetPatienceIsLonger) {
   EventLog log;
   wire::Heartbeat thin = at(1);

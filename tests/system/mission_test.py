@@ -218,6 +218,21 @@ class Mission(unittest.TestCase):
         for path in ["global_map.csv", "labels.csv"] + [f"robots/R0{r}/map.csv" for r in range(3)]:
             self.assertEqual(read(os.path.join(self.a, path)), read(os.path.join(out, path)), path)
 
+    def test_robots_look_again_when_all_have_landed_unless_told_not_to(self):
+        once = os.path.join(self.top, "once")
+        launch(once, "--no-look-again")
+        for out, looked in [(self.a, True), (once, False)]:
+            with open(os.path.join(out, "summary.json"), encoding="utf-8") as file:
+                summary = json.load(file)
+            self.assertEqual((summary["looks_again"], summary["profile"]), (looked, "best"))
+            for robot in ["R00", "R01", "R02"]:
+                said = read(os.path.join(out, "logs", robot + ".log")).decode()
+                self.assertEqual("looked again with" in said, looked, said)
+        for robot in ["R00", "R01", "R02"]:
+            path = f"robots/{robot}/topics.json"
+            self.assertEqual(read(os.path.join(once, path)), read(os.path.join(self.a, path)))
+        self.assertNotEqual(read(os.path.join(once, "global_map.csv")), read(os.path.join(self.a, "global_map.csv")))
+
     def test_another_seed_gives_another_map(self):
         c = os.path.join(self.top, "c")
         run(CONSOLE, "launch", "--world", "reef:tuning", *SIZE[:-1], "8", "--out", c)

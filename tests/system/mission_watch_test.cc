@@ -70,6 +70,15 @@ TEST_F(MissionWatchTest, WaitsForThoseItHasNotHeard) {
   EXPECT_FALSE(watch_.allLanded());
 }
 
+TEST_F(MissionWatchTest, WaitsForARobotThatHasLandedAndWillLookAgain) {
+  hearAll();
+  wire::Heartbeat listening = robot(100, wire::Phase::kListening);
+  listening.time = {3'000'000};
+  hear("R00", listening);
+  EXPECT_TRUE(watch_.allLanded());
+  EXPECT_EQ(watch_.lacking(), Lines{"R00 has yet to look again at its map"});
+}
+
 TEST_F(MissionWatchTest, WaitsForARobotThatStillFlies) {
   hearAll();
   wire::Heartbeat flying = robot(100, wire::Phase::kFlying);

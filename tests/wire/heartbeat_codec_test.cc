@@ -80,7 +80,7 @@ TEST(HeartbeatCodecTest, RefusesToEncodeNonsense) {
   broken([](Heartbeat& h) { h.time.us = -1; });
   broken([](Heartbeat& h) { h.epoch = -1; });
   broken([](Heartbeat& h) { h.observation = -2; });
-  broken([](Heartbeat& h) { h.phase = static_cast<Phase>(4); });
+  broken([](Heartbeat& h) { h.phase = static_cast<Phase>(5); });
   broken([](Heartbeat& h) { h.num_topics = 10001; });
   broken([](Heartbeat& h) { h.bytes_sent = -1; });
   broken([](Heartbeat& h) { h.x_m = std::numeric_limits<float>::quiet_NaN(); });

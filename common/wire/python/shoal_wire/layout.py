@@ -47,7 +47,7 @@ _LCM_TYPE = {"q": "int64_t", "i": "int32_t", "h": "int16_t", "B": "byte", "d": "
 PIECE_KINDS = {1: "TOPICS", 2: "BRICK", 3: "CERTAINTY", 4: "EDIT", 5: "PICTURE", 6: "SETTINGS"}  # of repairs
 TRAFFIC_CLASSES = ["heartbeat", "matches", "topics", "bricks", "certainty", "pictures", "local"]
 OPERATIONS = ["name", "link", "unlink", "exclude", "undo"]
-PHASES = ["flying", "landed", "leaving", "node"]
+PHASES = ["flying", "landed", "leaving", "node", "listening"]
 UNSIGNED = {"own_digest", "state_digest", "map_digest", "map_of_state", "vocabulary", "words", "hyperparameters"}
 
 

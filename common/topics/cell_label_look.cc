@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// CellLabelModel::lookAgain(): what is told of cells, by the topics of the whole team.
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "shoal/topics/cell_certainty.h"
+#include "shoal/topics/cell_label_model.h"
+#include "shoal/topics/likeliest_labels.h"
+
+namespace shoal::topics {
+namespace {
+
+constexpr int kRounds = 6;
+constexpr int64_t kLeast = std::numeric_limits<int64_t>::min();
+
+void check(const TeamTopics& team, int32_t vocabulary_size) {
+  for (const TeamTopics::Foreign& topic : team.others) {
+    int64_t total = 0;
+    int32_t last = -1;
+    for (const world::WordCount& w : topic.words) {
+      total += w.count;
+      if (w.word <= last || w.word >= vocabulary_size || w.count < 1 || total > int64_t{1} << 30)
+        throw std::invalid_argument("word " + std::to_string(w.word) +
+                                    " of a topic of the team is out of order or range");
+      last = w.word;
+    }
+  }
+}
+
+}  // namespace
+
+// The team's labels that this robot has a topic of, numbered from 0 in order of the slots. A topic without a
+// label of the team has one of its own.
+CellLabelModel::TeamLabels CellLabelModel::labelsOf(const TeamTopics& team) const {
+  const std::vector<int32_t> told = toldAs();
+  TeamLabels labels;
+  labels.of_slot.assign(told.size(), -1);
+  std::map<world::TopicId, int32_t> alone;
+  for (int32_t k = 0; k < slots_.end(); ++k) {
+    if (!slots_.isOpen(k)) continue;
+    const world::TopicId topic = slots_.id(told[static_cast<size_t>(k)]);
+    const auto known = team.own.find(topic);
+    int32_t& label = known == team.own.end() ? alone.try_emplace(topic, -1).first->second
+                                             : labels.of_team.try_emplace(known->second, -1).first->second;
+    if (label < 0) label = labels.count++;
+    labels.of_slot[static_cast<size_t>(k)] = label;
+  }
+  return labels;
+}
+
+void CellLabelModel::lookAgain(const TeamTopics& team) {
+  check(team, counts_.vocabularySize());
+  if (cells_.empty()) return;
+  const TeamLabels labels = labelsOf(team);
+  std::vector<const TeamTopics::Foreign*> heard;
+  for (const TeamTopics::Foreign& topic : team.others)
+    if (labels.of_team.contains(topic.label)) heard.push_back(&topic);
+  std::optional<LabelCounts> others;
+  std::vector<int64_t> other_scores;
+  if (!heard.empty()) {
+    others.emplace(counts_.groups(), static_cast<int32_t>(heard.size()), hyperparameters_.beta);
+    for (size_t i = 0; i < heard.size(); ++i) others->add(heard[i]->words, static_cast<int32_t>(i));
+    other_scores.resize(static_cast<size_t>(others->stride()));
+  }
+
+  LabelLikelihoods likelihoods{.num_labels = labels.count, .log_likelihoods = {}, .num_words = {}};
+  likelihoods.log_likelihoods.resize(cells_.size() * static_cast<size_t>(labels.count), kLeast);
+  auto* row = likelihoods.log_likelihoods.data();
+  for (const LabelledCell& cell : cells_) {
+    likelihoods.num_words.push_back(cell.num_words);
+    counts_.logLikelihoods(cell.words, cell.slot, scores_);
+    for (int32_t k = 0; k < slots_.end(); ++k) {
+      const int32_t label = labels.of_slot[static_cast<size_t>(k)];
+      if (label >= 0) row[label] = std::max(row[label], scores_[static_cast<size_t>(k)]);
+    }
+    if (others) others->logLikelihoods(cell.words, -1, other_scores);
+    for (size_t i = 0; i < heard.size(); ++i) {
+      int64_t& best = row[labels.of_team.at(heard[i]->label)];
+      best = std::max(best, other_scores[i]);
+    }
+    row += labels.count;
+  }
+  const std::vector<int32_t> likeliest = likeliestLabels(likelihoods, neighborhood_, scale_, kRounds);
+  for (size_t c = 0; c < cells_.size(); ++c)
+    tellAgain(cells_[c], likeliest[c], likelihoods.of(static_cast<int32_t>(c)), labels);
+}
+
+// As the likeliest of its own topics of that label, unless it is told as one.
+void CellLabelModel::tellAgain(LabelledCell& cell, int32_t label, std::span<const int64_t> log_likelihoods,
+                               const TeamLabels& labels) {
+  cell.told = toldSlot(cell);
+  if (labels.of_slot[static_cast<size_t>(cell.told)] != label) {
+    counts_.logLikelihoods(cell.words, cell.slot, scores_);
+    int64_t best = kLeast;
+    for (int32_t k = 0; k < slots_.end(); ++k) {
+      const auto i = static_cast<size_t>(k);
+      if (labels.of_slot[i] != label || scores_[i] <= best) continue;
+      best = scores_[i];
+      cell.told = k;
+    }
+  }
+  cell.told_openings = slots_.openings(cell.told);
+  int64_t other = labels.count > 1 ? kLeast : -cell.num_words * log_group_size_;
+  for (int32_t i = 0; i < labels.count; ++i)
+    if (i != label) other = std::max(other, log_likelihoods[static_cast<size_t>(i)]);
+  cell.certainty =
+      cellCertainty(log_likelihoods[static_cast<size_t>(label)], other, cell.num_words, log_group_size_);
+}
+
+}  // namespace shoal::topics
