@@ -78,12 +78,13 @@ try {
   const said = async (pattern) => until(async () => pattern.test(await text("#toast")), "it is said: " + pattern);
   if (await page.locator("#legend .rare").count() > 0) await page.locator("#legend .rare").click();
   const apart = await legend(), total = await cells();
+  const pair = await page.evaluate(() => [...document.querySelectorAll("#legend .label")].slice(0, 2).map((row) => row.dataset.key));
   await page.locator("#legend .label").nth(0).click();
   await page.locator("#inspector .buttons button", { hasText: "Same as" }).click();
   await said(/choose the label that is the same/);
   await page.locator("#legend .label").nth(1).click();
   await said(/ same /);
-  await until(async () => (await legend()).length === apart.length - 1, "two labels are one");
+  await until(async () => { const now = await legend(); return pair.filter((key) => now.includes(key)).length === 1; }, "two labels are one: " + pair);
   await shot("linked");
   await page.locator("#toast button").click();
   await said(/^Undone: .* are the same$/);
@@ -392,7 +393,7 @@ try {
   const finally_ = Number((await lossy.locator("#counts").innerText()).split(" ")[0].replace(/,/g, ""));
   const known = async (path) => (await fetch(new URL(path, lossyUrl))).json();
   let unsure = null;
-  for (const t of (await known("/api/mission")).times_s.reverse())
+  for (const t of (await known("/api/mission")).times_s.reverse().filter((t) => t < 11)) // before the last image
     if ((await known(`/api/holding?node=OPERATOR&at=${t}`)).shares?.some((s) => !s.certain && s.robot.startsWith("R"))) { unsure = t; break; }
   assert.ok(unsure !== null, "there was a time of which nobody knows");
   await lossy.goto(new URL(`/#t=${unsure}&node=OPERATOR`, lossyUrl).href);
