@@ -44,19 +44,11 @@ void RollCall::look(const fusion_node::MissionState& heard, double wall_s) {
   }
 }
 
-std::vector<std::string> RollCall::missing(double wall_s) const {
+std::vector<std::string> RollCall::notWhole(bool silent, double wall_s) const {
   std::vector<std::string> names;
   for (const auto& [robot, member] : members_) {
-    if (!member.is_whole && !isSilent(member, wall_s) && !excluded_.contains(robot))
-      names.push_back(world::name(robot));
-  }
-  return names;
-}
-
-std::vector<std::string> RollCall::silent(double wall_s) const {
-  std::vector<std::string> names;
-  for (const auto& [robot, member] : members_) {
-    if (!member.is_whole && isSilent(member, wall_s) && !excluded_.contains(robot))
+    const bool is_silent = wall_s - member.heard_s >= member.patience_s;
+    if (!member.is_whole && is_silent == silent && !excluded_.contains(robot))
       names.push_back(world::name(robot));
   }
   return names;

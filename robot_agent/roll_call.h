@@ -26,10 +26,10 @@ class RollCall {
   void look(const fusion_node::MissionState& heard, double wall_s);
 
   /// Names of those that are still to come, ascending. Empty: all are there, or silent.
-  std::vector<std::string> missing(double wall_s) const;
+  std::vector<std::string> missing(double wall_s) const { return notWhole(false, wall_s); }
 
   /// Of those not waited for, who is silent and never was whole.
-  std::vector<std::string> silent(double wall_s) const;
+  std::vector<std::string> silent(double wall_s) const { return notWhole(true, wall_s); }
 
  private:
   struct Member {
@@ -39,9 +39,7 @@ class RollCall {
     int32_t epoch = -1;
     bool is_whole = false;  // what it had to say when it had landed was held
   };
-  bool isSilent(const Member& member, double wall_s) const {
-    return wall_s - member.heard_s >= member.patience_s;
-  }
+  std::vector<std::string> notWhole(bool silent, double wall_s) const;
 
   world::RobotId self_;
   std::map<world::RobotId, Member> members_;

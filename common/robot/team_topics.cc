@@ -10,6 +10,16 @@
 #include "shoal/mapping/topic_matching.h"
 
 namespace shoal::robot {
+namespace {
+
+// No honest robot tells more.
+bool isTooLarge(const std::vector<world::WordCount>& words) {
+  int64_t total = 0;
+  for (const world::WordCount& w : words) total += w.count;
+  return total > topics::TeamTopics::kMostWords;
+}
+
+}  // namespace
 
 topics::TeamTopics teamTopics(const mapping::BeliefStore& heard, world::RobotId self,
                               const matching::MatcherOptions& matcher) {
@@ -26,7 +36,7 @@ topics::TeamTopics teamTopics(const mapping::BeliefStore& heard, world::RobotId 
     if (stacked.vertex[i] < 0 || topic.robot == mapping::kLibrary) continue;
     if (topic.robot == self) {
       team.own.emplace(topic.id, clustering.label[i]);
-    } else {
+    } else if (!isTooLarge(topic.words)) {
       team.others.push_back({clustering.label[i], topic.words});
     }
   }

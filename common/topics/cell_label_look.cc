@@ -22,7 +22,7 @@ void check(const TeamTopics& team, int32_t vocabulary_size) {
     int32_t last = -1;
     for (const world::WordCount& w : topic.words) {
       total += w.count;
-      if (w.word <= last || w.word >= vocabulary_size || w.count < 1 || total > int64_t{1} << 30)
+      if (w.word <= last || w.word >= vocabulary_size || w.count < 1 || total > TeamTopics::kMostWords)
         throw std::invalid_argument("word " + std::to_string(w.word) +
                                     " of a topic of the team is out of order or range");
       last = w.word;

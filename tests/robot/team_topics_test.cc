@@ -8,7 +8,7 @@
 
 #include "shoal/mapping/belief_pieces.h"
 #include "shoal/mapping/edit.h"
-#include "shoal/robot/explorer.h"
+#include "shoal/topics/cell_label_model.h"
 
 namespace shoal::robot {
 namespace {
@@ -88,6 +88,20 @@ TEST(TeamTopicsTest, OperatorsDecide) {
   ASSERT_EQ(known.others.size(), 1u);
   EXPECT_EQ(known.own.size(), 2u);
   EXPECT_EQ(teamTopics(storeOf(pieces), RobotId{1}, kMatcher), TeamTopics{});  // who is out knows nothing
+}
+
+// What a broken robot says must not end the others.
+TEST(TeamTopicsTest, NoTopicHasMoreWordsThanALearnerTakes) {
+  std::vector<Piece> pieces = piecesOf(team());
+  for (Piece& piece : pieces) {
+    if (piece.key.robot != RobotId{1} || piece.key.kind != mapping::PieceKind::kTopic) continue;
+    auto& part = std::get<mapping::TopicPart>(piece.content);
+    for (world::WordCount& w : part.words) w.count = part.words.front().word == 3 ? 1 << 29 : INT32_MAX;
+  }
+  const TeamTopics known = teamTopics(storeOf(pieces), RobotId{0}, kMatcher);
+  ASSERT_EQ(known.others.size(), 2u);  // 2^30 words may be
+  topics::CellLabelModel model({}, kGroups, 1, RobotId{0});
+  EXPECT_NO_THROW(model.lookAgain(known));
 }
 
 TEST(TeamTopicsTest, OtherSettingsAreNotCompared) {
