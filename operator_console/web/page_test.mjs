@@ -20,7 +20,7 @@ const shot = (name) => (folder ? page.screenshot({ path: `${folder}/${name}.png`
 const text = (selector) => page.locator(selector).innerText();
 const cells = async () => Number((await text("#counts")).split(" ")[0].replace(/,/g, ""));
 const until = async (what, why) => {
-  for (let i = 0; i < 150; ++i) { if (await what()) return; await page.waitForTimeout(100); }
+  for (const start = Date.now(); Date.now() - start < 60000; await page.waitForTimeout(100)) if (await what()) return;
   assert.fail(why);
 };
 try {
@@ -68,7 +68,7 @@ try {
   await page.keyboard.press("n");
   await page.locator("#legend input").fill("<i>reef & sand</i>");
   await page.keyboard.press("Enter");
-  await page.waitForSelector('#legend .name:text-is("<i>reef & sand</i>")', { timeout: 20000 });
+  await page.waitForSelector('#legend .name:text-is("<i>reef & sand</i>")');
   await page.locator("#undo").click();
   await until(async () => !(await text("#legend")).includes("reef & sand"), "the name is taken back");
 
@@ -134,7 +134,7 @@ try {
     await page.locator("#legend input").fill(name);
     assert.match(await text("#legend .naming"), /Enter keeps it/);
     await page.keyboard.press("Enter");
-    await page.waitForSelector(`#legend .name:text-is("${name}")`, { timeout: 20000 });
+    await page.waitForSelector(`#legend .name:text-is("${name}")`);
     await page.locator("#legend .label").first().click();
     await page.waitForSelector("#inspector .why table");
     for (const [width, height] of [[1400, 860], [390, 844]]) {

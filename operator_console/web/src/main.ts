@@ -324,7 +324,8 @@ function toast(text: string, undo = false): void {
 
 async function decided(edit: Record<string, string>): Promise<void> {
   try {
-    const { says } = await decide(edit), taken = says.match(/^(\S+) is undone$/); // the events know what that was
+    const { says } = await decide(edit), taken = says.match(/^(\S+) is undone$/);
+    if (taken) events = (await ask<{ events: Happening[] }>("/api/events")).events; // they know what that was
     const was = taken && events.find((e) => e.text.startsWith(taken[1] + ": "));
     toast(was ? "Undone: " + was.text.slice(taken![1].length + 2) : says, edit.edit !== "undo");
     await refresh();
