@@ -322,12 +322,13 @@ function toast(text: string, undo = false): void {
   box.dataset.timer = String(setTimeout(() => (box.hidden = true), 8000));
 }
 
+const saidHere = new Map<string, string>(); // what was decided on this page, by id; the events tell of it later, and of all others
 async function decided(edit: Record<string, string>): Promise<void> {
   try {
-    const { says } = await decide(edit), taken = says.match(/^(\S+) is undone$/);
-    if (taken) events = (await ask<{ events: Happening[] }>("/api/events")).events; // they know what that was
-    const was = taken && events.find((e) => e.text.startsWith(taken[1] + ": "));
-    toast(was ? "Undone: " + was.text.slice(taken![1].length + 2) : says, edit.edit !== "undo");
+    const { id, says } = await decide(edit), undone = says.match(/^(\S+) is undone$/)?.[1];
+    saidHere.set(id, says);
+    const was = undone && (saidHere.get(undone) ?? events.find((e) => e.text.startsWith(undone + ": "))?.text.slice(undone.length + 2));
+    toast(was ? "Undone: " + was : says, edit.edit !== "undo");
     await refresh();
     if (edit.edit === "undo" && map.selected !== null) void inspect(map.selected);
   } catch (problem) { toast((problem as Error).message); }
