@@ -24,7 +24,7 @@ endfunction()
 function(shoal_add_test)
   cmake_parse_arguments(TEST "" "NAME;TIMEOUT" "SOURCES;LINK;LABELS;ENVIRONMENT" ${ARGN})
   if(NOT TEST_TIMEOUT)
-    set(TEST_TIMEOUT 60)
+    set(TEST_TIMEOUT 120)
   endif()
   if(CMAKE_CXX_FLAGS MATCHES "-fsanitize")  # many times slower
     math(EXPR TEST_TIMEOUT "4 * ${TEST_TIMEOUT}")

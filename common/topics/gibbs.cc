@@ -68,7 +68,7 @@ void Gibbs::enter(int32_t cell, std::span<Token> tokens, std::span<int32_t> cell
   lanes_.key[j] = static_cast<uint32_t>(key >> 32);
   const auto alpha = static_cast<float>(hyperparameters_.alpha);
   for (size_t k = 0; k < cell_counts.size(); ++k) {
-    lanes_.counts[k * kLanes + j] = cell_counts[k];
+    lanes_.counts[k * kLanes + j] = static_cast<float>(cell_counts[k]);
     lanes_.prior[k * kLanes + j] = neighbor_counts[k] + alpha;
     outside_[k] -= cell_counts[k];
   }
@@ -181,7 +181,8 @@ bool Gibbs::isConfined(int32_t num_running) const {
     if (!slots_.isOpen(k)) continue;
     int32_t outside = outside_[static_cast<size_t>(k)];
     for (int32_t i = num_running; i < num_entered_; ++i) {
-      outside += lanes_.counts[static_cast<size_t>(k * kLanes + running_[static_cast<size_t>(i)])];
+      outside += static_cast<int32_t>(
+          lanes_.counts[static_cast<size_t>(k * kLanes + running_[static_cast<size_t>(i)])]);
     }
     if (outside == 0) return true;
   }
@@ -228,7 +229,7 @@ void Gibbs::drawOne() {
 
 void Gibbs::openTopic(int32_t lane) {
   const auto j = static_cast<size_t>(lane);
-  const auto count = [&](int32_t slot) -> int32_t& {
+  const auto count = [&](int32_t slot) -> float& {
     return lanes_.counts[static_cast<size_t>(slot) * kLanes + j];
   };
   Token& token = *lanes_.next[j]++;
@@ -253,7 +254,7 @@ void Gibbs::leave() {
       continue;
     }
     for (size_t k = 0; k < outside_.size(); ++k) {
-      visit.counts[k] = lanes_.counts[k * kLanes + j];
+      visit.counts[k] = static_cast<int32_t>(lanes_.counts[k * kLanes + j]);
       outside_[k] += visit.counts[k];
     }
     left_[static_cast<size_t>(num_left_++)] = visit.cell;

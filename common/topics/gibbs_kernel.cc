@@ -33,9 +33,9 @@ constexpr int32_t kWidth = static_cast<int32_t>(hn::MaxLanes(Floats()));
 
 // What a round reads and writes beside the lanes, [lane].
 struct Round {
-  alignas(64) int32_t own[kLanes];      // slot of the token's topic, -1: it has none, or is not drawn
-  alignas(64) int32_t drawn[kLanes];    // its new one
-  alignas(64) int32_t running[kLanes];  // -1: the lane has a token to draw, 0: it has none
+  alignas(64) int32_t drawn[kLanes];    // slot of the token's new topic
+  alignas(64) int32_t running[kLanes];  // -1: the lane has a token to draw, 0: it has none, or opens a topic
+  int32_t own[kLanes];                  // slot of the token's topic, -1: it has none, or there is no token
   int32_t* row[kLanes];                 // n_kw of the token's word
   int32_t order[kLanes];                // lanes that run
 };
@@ -52,14 +52,7 @@ HWY_INLINE VW scattered(VW counter, VW key) {
 
 HWY_INLINE VF asFloats(VW below_two_to_31) { return hn::ConvertTo(kF, hn::BitCast(kI, below_two_to_31)); }
 
-// a - 1 where the mask is set.
-HWY_INLINE VI less(VI a, hn::Mask<Ints> mask) {
-#if HWY_TARGET == HWY_AVX3
-  return hn::IfThenElse(mask, hn::Sub(a, hn::Set(kI, 1)), a);
-#else
-  return hn::Add(a, hn::VecFromMask(kI, mask));
-#endif
-}
+// a + 1 where the mask is set.
 HWY_INLINE VI more(VI a, hn::Mask<Ints> mask) {
 #if HWY_TARGET == HWY_AVX3
   return hn::IfThenElse(mask, hn::Add(a, hn::Set(kI, 1)), a);
@@ -106,18 +99,15 @@ HWY_INLINE void loadSlots(int32_t* const* rows, int32_t k, VI* out) {
 
 #endif
 
-// One part's draws of a round. Where a topic opens, running becomes 0 and nothing moves. True: somewhere.
+// One part's draws of a round. Where a topic opens, running becomes 0. True: somewhere.
 template <bool kMayOpen>
 HWY_INLINE bool drawPart(const Table& table, const float* HWY_RESTRICT inverse, Lanes& lanes, Round& round,
                          int32_t first) {
-  const VI own = hn::Load(kI, round.own + first);
   const VF beta = hn::Set(kF, table.beta);
-  int32_t* HWY_RESTRICT const counts = lanes.counts.data() + first;
+  const float* HWY_RESTRICT const counts = lanes.counts.data() + first;
   const float* HWY_RESTRICT const prior = lanes.prior.data() + first;
   float* HWY_RESTRICT const sums = lanes.sums.data() + first;
   const int32_t num_slots = table.num_slots;
-  const VI one = hn::Set(kI, 1);
-  VI slot = hn::Zero(kI);
   VF total = hn::Zero(kF);
   for (int32_t k = 0; k < num_slots; k += kSlotsTogether) {
     VI of_word[kSlotsTogether];
@@ -125,13 +115,9 @@ HWY_INLINE bool drawPart(const Table& table, const float* HWY_RESTRICT inverse, 
     VF within = hn::Zero(kF);
     for (int32_t i = 0; i < kSlotsTogether; ++i) {
       const int32_t at = (k + i) * kLanes;
-      const auto is_own = hn::Eq(own, slot);
-      slot = hn::Add(slot, one);
-      const VI of_cell = less(hn::Load(kI, counts + at), is_own);
-      hn::Store(of_cell, kI, counts + at);
       const VF word_weight =
-          hn::Mul(hn::Add(hn::ConvertTo(kF, less(of_word[i], is_own)), beta), hn::Set(kF, inverse[k + i]));
-      const VF weight = hn::Mul(word_weight, hn::Add(hn::ConvertTo(kF, of_cell), hn::Load(kF, prior + at)));
+          hn::Mul(hn::Add(hn::ConvertTo(kF, of_word[i]), beta), hn::Set(kF, inverse[k + i]));
+      const VF weight = hn::Mul(word_weight, hn::Add(hn::Load(kF, counts + at), hn::Load(kF, prior + at)));
       within = i == 0 ? weight : hn::Add(within, weight);
       hn::Store(hn::Add(total, within), kF, sums + at);
     }
@@ -146,7 +132,7 @@ HWY_INLINE bool drawPart(const Table& table, const float* HWY_RESTRICT inverse, 
   // The midpoint of one of 2^23 equal parts of (0, 1); exact.
   const VF uniform = hn::Mul(hn::Add(asFloats(hn::ShiftRight<9>(scattered(counter, key))), hn::Set(kF, 0.5F)),
                              hn::Set(kF, 0x1p-23F));
-  VF point = hn::Mul(total, uniform);
+  const VF point = hn::Mul(total, uniform);
   bool opens = false;
   if constexpr (kMayOpen) {
     // In (0, 1] as fine as float is, from 48 bits: the probability may be 1e-12.
@@ -163,33 +149,19 @@ HWY_INLINE bool drawPart(const Table& table, const float* HWY_RESTRICT inverse, 
     running = hn::AndNot(opening, running);
     hn::Store(running, kI, round.running + first);
   }
-  // Lanes that draw nothing have no slot beyond the point.
-  point = hn::IfThenElse(hn::MaskFromVec(hn::BitCast(kF, running)), point,
-                         hn::Set(kF, std::numeric_limits<float>::infinity()));
   VI drawn = hn::Zero(kI);
-  auto passed_before = hn::Eq(drawn, drawn);
   for (int32_t k = 0; k < num_slots; k += kSlotsTogether) {
     for (int32_t i = 0; i < kSlotsTogether; ++i) {
       const int32_t at = (k + i) * kLanes;
-      const auto passed = hn::RebindMask(kI, hn::Le(hn::Load(kF, sums + at), point));
-      drawn = more(drawn, passed);
-      hn::Store(more(hn::Load(kI, counts + at), hn::AndNot(passed, passed_before)), kI, counts + at);
-      passed_before = passed;
+      drawn = more(drawn, hn::RebindMask(kI, hn::Le(hn::Load(kF, sums + at), point)));
     }
   }
   hn::Store(drawn, kI, round.drawn + first);
   return opens;
 }
 
-// What a topic that opens in one lane leaves undone. @returns the lane.
-int32_t undo(Lanes& lanes, int32_t num_running, const Round& round, int32_t num_moved) {
-  const int32_t opening = round.order[num_moved];
-  for (int32_t i = num_moved; i < num_running; ++i) {
-    const int32_t j = round.order[i];
-    if (round.own[j] >= 0) ++lanes.counts[static_cast<size_t>(round.own[j] * kLanes + j)];
-    if (round.running[j] != 0) --lanes.counts[static_cast<size_t>(round.drawn[j] * kLanes + j)];
-  }
-  return opening;
+HWY_INLINE float& countOf(Lanes& lanes, int32_t slot, uint32_t lane) {
+  return lanes.counts[static_cast<size_t>(slot * kLanes) + lane];
 }
 
 // Looks up the tokens `ahead` of the lanes' next ones. @returns how many lanes have one.
@@ -230,6 +202,16 @@ HWY_INLINE void lookUpLater(const Table& table, const Lanes& lanes, const Round&
   }
 }
 
+// Takes the tokens of a round out of the counts (by -1), or puts them back (by 1).
+void changeCounts(Lanes& lanes, const Round& round, int32_t num_running, int32_t by) {
+  for (int32_t i = 0; i < num_running; ++i) {
+    const auto j = static_cast<uint32_t>(round.order[i]);
+    if (round.own[j] < 0) continue;
+    round.row[j][round.own[j]] += by;
+    countOf(lanes, round.own[j], j) += static_cast<float>(by);
+  }
+}
+
 int32_t roundsUntilOneEnds(const Lanes& lanes, const Round& round, int32_t num_running) {
   int64_t rounds = std::numeric_limits<int32_t>::max();
   for (int32_t i = 0; i < num_running; ++i) {
@@ -246,9 +228,11 @@ Drawn drawRoundsOf(const Table& table, const float* inverse, Lanes& lanes, const
   for (Round& round : rounds) std::fill_n(round.row, kLanes, table.word_counts);
   const int32_t enough = std::max(num_running - max_finished, 0);
   Drawn result;
-  lookUp(table, lanes, running, num_running, 0, rounds[0]);
+  num_running = lookUp(table, lanes, running, num_running, 0, rounds[0]);
+  changeCounts(lanes, rounds[0], num_running, -1);
   int32_t alike = 0;  // rounds of the same lanes
-  for (int32_t r = 0; r < max_rounds && num_running > enough; ++r) {
+  int32_t r = 0;
+  for (; r < max_rounds && num_running > enough; ++r) {
     Round& round = rounds[r % 2];
     Round& later = rounds[(r + 1) % 2];
     int32_t num_later = num_running;
@@ -267,23 +251,32 @@ Drawn drawRoundsOf(const Table& table, const float* inverse, Lanes& lanes, const
     }
     for (int32_t i = 0; i < num_running; ++i) {
       const auto j = static_cast<uint32_t>(round.order[i]);
-      if constexpr (kMayOpen) {
-        if (opens && round.running[j] == 0) {
-          result.opening = undo(lanes, num_running, round, i);
-          return result;
-        }
-      }
       int32_t* const row = round.row[j];
       const int32_t own = round.own[j], drawn = round.drawn[j];
-      Token* const token = lanes.next[j];
-      lanes.next[j] = token + 1;
-      token->slot = drawn;
-      ++result.num_drawn;
-      if (own >= 0) --row[own];
-      ++row[drawn];
+      if constexpr (kMayOpen) {
+        if (opens && result.opening < 0 && round.running[j] == 0) result.opening = round.order[i];
+      }
+      if (!kMayOpen || result.opening < 0) {
+        (lanes.next[j]++)->slot = drawn;
+        ++row[drawn];
+        countOf(lanes, drawn, j) += 1.0F;
+        ++result.num_drawn;
+      } else if (own >= 0) {
+        ++row[own];
+        countOf(lanes, own, j) += 1.0F;
+      }
+      if (later.own[j] >= 0) {
+        --later.row[j][later.own[j]];
+        countOf(lanes, later.own[j], j) -= 1.0F;
+      }
     }
     num_running = num_later;
+    if (result.opening >= 0) {
+      ++r;
+      break;
+    }
   }
+  changeCounts(lanes, rounds[r % 2], num_running, 1);  // what was looked up and is not drawn
   return result;
 }
 
@@ -337,8 +330,8 @@ Totals refreshHere(const Table& table, const Lanes& lanes, const int32_t* named,
     for (int32_t first = 0; first < kLanes; first += kWidth) {
       VI slots[kSlotsTogether];
       for (int32_t i = 0; i < kSlotsTogether; ++i) {
-        slots[i] =
-            hn::And(hn::Load(kI, mask + first), hn::Load(kI, lanes.counts.data() + (k + i) * kLanes + first));
+        slots[i] = hn::And(hn::Load(kI, mask + first),
+                           hn::ConvertTo(kI, hn::Load(kF, lanes.counts.data() + (k + i) * kLanes + first)));
       }
       sumsOfFour(slots, count);
     }

@@ -58,11 +58,6 @@ std::vector<int32_t> Neighborhood::around(const world::CellIndex& cell) const {
   return known;
 }
 
-std::span<const int32_t> Neighborhood::of(int32_t cell) const {
-  const Links& links = links_[static_cast<size_t>(cell)];
-  return {links.cells.data(), static_cast<size_t>(links.count)};
-}
-
 bool Neighborhood::adjoin(int32_t a, int32_t b) const { return std::ranges::find(of(a), b) != of(a).end(); }
 
 void Neighborhood::link(int32_t a, int32_t b) {

@@ -2,6 +2,7 @@
 #include "shoal/topics/topic_model.h"
 
 #include <algorithm>
+#include <array>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -91,17 +92,30 @@ void TopicModel::refine(int64_t resamples) {
   if (cells_.empty()) return;
   const int64_t start = num_resamples_;
   const int64_t budget = resamples - overrun_;
-  std::vector<Visit> visits;
-  while (num_resamples_ - start < budget) {
-    Random random(seed_, kScheduleStream, robot_, num_visits_++);
-    const VisitLaw law{hyperparameters_.tau, hyperparameters_.local_rate};
-    const int32_t c = nextVisit(law, latest_, numCells(), random);
-    visits.push_back(nextVisitOf(c, 0));
-    num_resamples_ += std::ssize(cells_[static_cast<size_t>(c)].tokens);
-  }
-  run(visits);
+  run(nextVisits(budget));
   overrun_ = num_resamples_ - start - budget;
   gibbs_.nameTopics(time_);
+}
+
+// Visits by the schedule, of so many words or a few more.
+std::vector<TopicModel::Visit> TopicModel::nextVisits(int64_t resamples) {
+  const VisitLaw law{hyperparameters_.tau, hyperparameters_.local_rate};
+  std::array<int32_t, kAhead> chosen{};  // of the next visits
+  const auto choose = [&](uint64_t visit) {
+    Random random(seed_, kScheduleStream, robot_, visit);
+    const int32_t c = nextVisit(law, latest_, numCells(), random);
+    __builtin_prefetch(&cells_[static_cast<size_t>(c)]);
+    chosen[visit % kAhead] = c;
+  };
+  for (uint64_t i = 0; i < kAhead; ++i) choose(num_visits_ + i);
+  std::vector<Visit> visits;
+  for (const int64_t start = num_resamples_; num_resamples_ - start < resamples;) {
+    const int32_t c = chosen[num_visits_ % kAhead];
+    choose(num_visits_++ + kAhead);
+    visits.push_back(nextVisitOf(c, 0));
+    num_resamples_ += std::ssize(visits.back().tokens);
+  }
+  return visits;
 }
 
 std::vector<world::TopicId> TopicModel::adopt(const std::vector<AdoptedTopic>& others) {
@@ -203,8 +217,10 @@ int32_t TopicModel::cellFor(const world::CellIndex& index) {
 }
 
 TopicModel::Visit TopicModel::nextVisitOf(int32_t c, int32_t first) {
-  const uint64_t draw = cells_[static_cast<size_t>(c)].num_draws++;
-  return {c, first, Random(cell_stream_, static_cast<uint64_t>(c), draw)};
+  Cell& cell = cells_[static_cast<size_t>(c)];
+  const uint64_t draw = cell.num_draws++;
+  return {c, std::span(cell.tokens).subspan(static_cast<size_t>(first)),
+          Random(cell_stream_, static_cast<uint64_t>(c), draw)};
 }
 
 // Each visit begins as soon as a lane is free, unless its cell or one beside it is being visited, or is to be
@@ -223,6 +239,7 @@ void TopicModel::run(const std::vector<Visit>& visits) {
     }
     waiting.resize(num_waiting);
     for (; next != visits.end() && gibbs_.numEntered() < kLanes && waiting.size() < kMaxWaiting; ++next) {
+      if (visits.end() - next > 2 * kAhead) neighborhood_.prefetch(next[2 * kAhead].cell);
       if (visits.end() - next > kAhead) prefetch(next[kAhead]);
       if (!begin(*next)) waiting.push_back(&*next);
     }
@@ -239,8 +256,7 @@ void TopicModel::prefetch(const Visit& visit) const {
     const auto* const bytes = reinterpret_cast<const char*>(from);
     for (size_t at = 0; at < size; at += 64) __builtin_prefetch(bytes + at);
   };
-  const std::vector<Token>& tokens = cells_[static_cast<size_t>(visit.cell)].tokens;
-  fetch(tokens.data(), std::min<size_t>(tokens.size() * sizeof(Token), 512));
+  fetch(visit.tokens.data(), std::min<size_t>(visit.tokens.size_bytes(), 512));
   const size_t row = std::min<size_t>(countsOf(visit.cell).size_bytes(), 256);
   fetch(countsOf(visit.cell).data(), row);
   for (const int32_t neighbor : neighborhood_.of(visit.cell)) {
@@ -251,17 +267,15 @@ void TopicModel::prefetch(const Visit& visit) const {
 
 bool TopicModel::begin(const Visit& visit) {
   // First draws go one by one: they learn from each other most.
-  const bool is_first = cells_[static_cast<size_t>(visit.cell)].tokens.back().slot < 0;
+  const bool is_first = visit.tokens.back().slot < 0;
   if (gibbs_.numEntered() >= (is_first ? 1 : kLanes)) return false;
   const Marks& marks = marks_[static_cast<size_t>(visit.cell)];
   if (marks.num_visited > 0 || marks.waited_for == look_) {
     forAround(visit.cell, [&](Marks& around) { around.waited_for = look_; });
     return false;
   }
-  Cell& cell = cells_[static_cast<size_t>(visit.cell)];
   gatherNeighbors(visit.cell, neighbor_counts_);
-  gibbs_.enter(visit.cell, std::span(cell.tokens).subspan(static_cast<size_t>(visit.first)),
-               countsOf(visit.cell), neighbor_counts_, visit.random);
+  gibbs_.enter(visit.cell, visit.tokens, countsOf(visit.cell), neighbor_counts_, visit.random);
   forAround(visit.cell, [](Marks& around) { ++around.num_visited; });
   return true;
 }
@@ -273,14 +287,18 @@ void TopicModel::forAround(int32_t c, const Change& change) {
 }
 
 void TopicModel::gatherNeighbors(int32_t c, std::span<float> counts) const {
-  std::ranges::fill(counts, 0.0F);
-  if (hyperparameters_.neighbor_weight == 0.0) return;
-  for (const int32_t neighbor : neighborhood_.of(c)) {
-    const std::span<const int32_t> its = countsOf(neighbor);
-    for (size_t k = 0; k < counts.size(); ++k) counts[k] += static_cast<float>(its[k]);
-  }
   const auto weight = static_cast<float>(hyperparameters_.neighbor_weight);
-  for (float& count : counts) count *= weight;
+  const std::span<const int32_t> neighbors = neighborhood_.of(c);
+  const int32_t* const rows = cell_counts_.data();
+  const auto stride = static_cast<size_t>(gibbs_.stride());
+  for (size_t k = 0; k < stride; k += kSlotsTogether) {
+    std::array<int32_t, kSlotsTogether> sums{};  // of a length that compilers know
+    for (const int32_t neighbor : neighbors) {
+      const int32_t* const row = rows + static_cast<size_t>(neighbor) * stride + k;
+      for (size_t i = 0; i < kSlotsTogether; ++i) sums[i] += row[i];
+    }
+    for (size_t i = 0; i < kSlotsTogether; ++i) counts[k + i] = static_cast<float>(sums[i]) * weight;
+  }
 }
 
 std::span<int32_t> TopicModel::countsOf(int32_t c) {

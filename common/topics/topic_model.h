@@ -105,13 +105,14 @@ class TopicModel final : public Learner {
   uint64_t identity() const;
   int32_t cellFor(const world::CellIndex& index);
 
-  // Words of a cell to be drawn: those from `first` on.
+  // Words of a cell to be drawn.
   struct Visit {
     int32_t cell;
-    int32_t first;
+    std::span<Token> tokens;
     Random random;
   };
   Visit nextVisitOf(int32_t cell, int32_t first);
+  std::vector<Visit> nextVisits(int64_t resamples);
   void run(const std::vector<Visit>& visits);
   bool begin(const Visit& visit);
   void prefetch(const Visit& visit) const;

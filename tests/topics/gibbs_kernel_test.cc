@@ -105,7 +105,7 @@ std::vector<double> shares(const World& world, size_t i, size_t at) {
   for (size_t k = 0; k < world.stride; ++k) {
     const int32_t own = token.slot == static_cast<int32_t>(k) ? 1 : 0;
     const double n_kw = world.word_counts[static_cast<size_t>(token.word) * world.stride + k] - own;
-    const double n_ck = world.lanes.counts[k * kLanes + j] - own;
+    const double n_ck = double{world.lanes.counts[k * kLanes + j]} - own;
     share.push_back((n_kw + double{world.table.beta}) * double{world.inverse[k]} *
                     (n_ck + double{world.lanes.prior[k * kLanes + j]}));
   }
@@ -114,7 +114,8 @@ std::vector<double> shares(const World& world, size_t i, size_t at) {
 
 // n_kw and n_ck as moves of some tokens leave them.
 void expectMoved(const World& before, const World& after, size_t num_slots) {
-  auto word_counts = before.word_counts, cell_counts = before.lanes.counts;
+  auto word_counts = before.word_counts;
+  auto cell_counts = before.lanes.counts;
   for (size_t i = 0; i < before.tokens.size(); ++i) {
     const auto j = static_cast<size_t>(before.running[i]);
     for (size_t t = 0; t < before.tokens[i].size(); ++t) {
@@ -194,7 +195,7 @@ TEST_F(GibbsKernelTest, DrawsAsOftenAsTheFormulaSays) {
   }
 }
 
-// Lanes of one round do not see each other: each draws what it would alone.
+// Lanes of one round do not see each other: each draws what it would alone, without the others' words.
 TEST_F(GibbsKernelTest, ARoundIsDrawnFromTheCountsBeforeIt) {
   World first(3, 20, kLanes, true, 0);
   first.bind();
@@ -205,6 +206,11 @@ TEST_F(GibbsKernelTest, ARoundIsDrawnFromTheCountsBeforeIt) {
   for (size_t i = 0; i < first.tokens.size(); ++i) {
     World alone = first;
     alone.bind();
+    for (size_t other = 0; other < first.tokens.size(); ++other) {
+      const Token token = first.tokens[other][0];
+      if (other == i || token.slot < 0) continue;
+      --alone.word_counts[static_cast<size_t>(token.word) * first.stride + static_cast<size_t>(token.slot)];
+    }
     drawRounds(alone.table, alone.inverse.data(), alone.lanes, &alone.running[i], 1, 1, 1);
     EXPECT_EQ(together.tokens[i][0].slot, alone.tokens[i][0].slot);
     EXPECT_EQ(together.numDrawn(i), 1u);
@@ -265,7 +271,8 @@ TEST_F(GibbsKernelTest, RefreshCountsTheLanesNamedAndFindsWhatHasOpenedOrClosed)
   int64_t all = 0;
   for (size_t k = 0; k < 12; ++k) {
     int32_t n = world.outside[k];
-    for (const int32_t j : world.running) n += world.lanes.counts[k * kLanes + static_cast<size_t>(j)];
+    for (const int32_t j : world.running)
+      n += static_cast<int32_t>(world.lanes.counts[k * kLanes + static_cast<size_t>(j)]);
     EXPECT_EQ(world.topic_counts[k], n);
     EXPECT_FLOAT_EQ(world.inverse[k], 1.0F / (static_cast<float>(n) + world.table.beta_sum));
     largest = std::max(largest, world.inverse[k]);
