@@ -204,9 +204,9 @@ void Agent::fly() {
     passTimeUntil(clock_.now());
   }
   publishAll();
-  while (saving_.isRunning()) lookAtSave(true);
+  awaitSaved();
   save();
-  while (isHolding()) lookAtSave(true);  // who has landed has said all it has, if only to its queue
+  awaitSaved();  // who has landed has said all it has, if only to its queue
   if (stopRequested()) return;
   phase_ = willLookAgain() ? wire::Phase::kListening : wire::Phase::kLanded;
   spdlog::info("landed after {} observations: {} topics, {} cells, {:.1f} ms each", path_.size(),
@@ -237,11 +237,11 @@ void Agent::lookAgain() {
     const double start_ms = threadCpuMs();
     const auto team = robot::teamTopics(others_.beliefs(), options_.explorer.robot, options_.matcher);
     if (!team.others.empty()) {
-      explorer_.lookAgain(team);
+      explorer_.lookAgain(team, [this] { breathe(); });
       publishAll();
-      lookAtSave(true);
+      awaitSaved();
       save();
-      while (isHolding()) lookAtSave(true);
+      awaitSaved();
       spdlog::info("looked again with {} topics of others, {:.1f} ms", team.others.size(),
                    threadCpuMs() - start_ms);
     }
@@ -449,6 +449,15 @@ void Agent::lookAtSave(bool waits) {
   if (!unsaid_.empty() && !counts_images) save();
 }
 
+// Until no checkpoint is being written any more.
+void Agent::awaitSaved() {
+  while (saving_.isRunning()) {
+    breathe();
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    lookAtSave(false);
+  }
+}
+
 Checkpoint Agent::snapshot() {
   Checkpoint c{.mission = options_.mission,
                .robot = options_.explorer.robot,
@@ -504,6 +513,18 @@ void Agent::listen(int timeout_ms) {
     spdlog::error("another process (pid {}) also calls itself {}", twin->second.pid, name_);
     warned_of_twin_ = true;
   }
+}
+
+// While something takes long: sends what is due and hears what has come, which changes nothing of that.
+void Agent::breathe() {
+  const auto now = std::chrono::steady_clock::now();
+  if (options_.rate == 0 && now - breathed_ >= kIdleSecond) {
+    clock_.advanceTo(clock_.now() + kSecondUs);
+    breathed_ = now;
+  }
+  repair_.pump(clock_.now());
+  sender_.pump(clock_.now());
+  listen(0);
 }
 
 void Agent::linger() {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -81,6 +82,7 @@ class Agent {
   void resume();
   void save();
   void lookAtSave(bool waits);
+  void awaitSaved();
   Checkpoint snapshot();
   void takeIn(const world::Observation& observation);
   void publish();
@@ -97,6 +99,7 @@ class Agent {
   void passTimeUntil(int64_t to_us);
   void passSecond();
   void listen(int timeout_ms);
+  void breathe();
   bool isHeard() const;
   std::optional<comms::Packet> join(std::span<const comms::SendQueue::Next> together) const;
   void write();
@@ -125,6 +128,7 @@ class Agent {
   std::vector<mapping::StampedPose> path_;
   wire::Phase phase_ = wire::Phase::kFlying;
   double total_ms_ = 0;
+  std::chrono::steady_clock::time_point breathed_;
   fusion_node::SilenceAlarm silence_;
   bool warned_of_twin_ = false;
   bool epoch_is_kept_ = false;

@@ -75,8 +75,8 @@ void Explorer::learn(const world::WordsInCells& words) {
   dropped_words_ += words.dropped_words;
 }
 
-void Explorer::lookAgain(const topics::TeamTopics& team) {
-  learner_->lookAgain(team);
+void Explorer::lookAgain(const topics::TeamTopics& team, const std::function<void()>& breathe) {
+  learner_->lookAgain(team, breathe);
   ++last_observation_;
   looked_again_ = true;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -77,7 +78,8 @@ class Explorer final : public mapping::BelievedBricks {
   /// Learner::lookAgain(). What comes of it is a belief of its own, with a version above that of the last
   /// image; an image that comes later must have a number above it.
   /// @throws as Learner::lookAgain(); std::logic_error unless canLookAgain().
-  void lookAgain(const topics::TeamTopics& team);
+  void lookAgain(
+      const topics::TeamTopics& team, const std::function<void()>& breathe = [] {});
 
   /// Robots of profile "best" can.
   bool canLookAgain() const { return learner_->canLookAgain(); }

@@ -8,12 +8,12 @@
 
 #include "shoal/topics/cell_certainty.h"
 #include "shoal/topics/cell_label_model.h"
-#include "shoal/topics/likeliest_labels.h"
 
 namespace shoal::topics {
 namespace {
 
 constexpr int kRounds = 6;
+constexpr int32_t kCellsAtOnce = 1024;  // between two breaths
 constexpr int64_t kLeast = std::numeric_limits<int64_t>::min();
 
 void check(const TeamTopics& team, int32_t vocabulary_size) {
@@ -51,7 +51,7 @@ CellLabelModel::TeamLabels CellLabelModel::labelsOf(const TeamTopics& team) cons
   return labels;
 }
 
-void CellLabelModel::lookAgain(const TeamTopics& team) {
+void CellLabelModel::lookAgain(const TeamTopics& team, const std::function<void()>& breathe) {
   check(team, counts_.vocabularySize());
   if (cells_.empty()) return;
   const TeamLabels labels = labelsOf(team);
@@ -66,30 +66,35 @@ void CellLabelModel::lookAgain(const TeamTopics& team) {
     other_scores.resize(static_cast<size_t>(others->stride()));
   }
 
-  LabelLikelihoods likelihoods{.num_labels = labels.count, .log_likelihoods = {}, .num_words = {}};
-  likelihoods.log_likelihoods.resize(cells_.size() * static_cast<size_t>(labels.count), kLeast);
-  auto* row = likelihoods.log_likelihoods.data();
+  LabelCandidates candidates(neighborhood_, scale_);
+  std::vector<int64_t> row(static_cast<size_t>(labels.count));
   for (const LabelledCell& cell : cells_) {
-    likelihoods.num_words.push_back(cell.num_words);
+    if (candidates.numCells() % kCellsAtOnce == 0) breathe();
+    std::ranges::fill(row, kLeast);
     counts_.logLikelihoods(cell.words, cell.slot, scores_);
     for (int32_t k = 0; k < slots_.end(); ++k) {
       const int32_t label = labels.of_slot[static_cast<size_t>(k)];
-      if (label >= 0) row[label] = std::max(row[label], scores_[static_cast<size_t>(k)]);
+      if (label < 0) continue;
+      int64_t& best = row[static_cast<size_t>(label)];
+      best = std::max(best, scores_[static_cast<size_t>(k)]);
     }
     if (others) others->logLikelihoods(cell.words, -1, other_scores);
     for (size_t i = 0; i < heard.size(); ++i) {
-      int64_t& best = row[labels.of_team.at(heard[i]->label)];
+      int64_t& best = row[static_cast<size_t>(labels.of_team.at(heard[i]->label))];
       best = std::max(best, other_scores[i]);
     }
-    row += labels.count;
+    candidates.add(row, cell.num_words);
   }
-  const std::vector<int32_t> likeliest = likeliestLabels(likelihoods, neighborhood_, scale_, kRounds);
-  for (size_t c = 0; c < cells_.size(); ++c)
-    tellAgain(cells_[c], likeliest[c], likelihoods.of(static_cast<int32_t>(c)), labels);
+  const std::vector<int32_t> likeliest = likeliestLabels(candidates, kRounds, breathe);
+  for (size_t c = 0; c < cells_.size(); ++c) {
+    if (c % kCellsAtOnce == 0) breathe();
+    tellAgain(cells_[c], likeliest[c], candidates.of(static_cast<int32_t>(c)), labels);
+  }
 }
 
 // As the likeliest of its own topics of that label, unless it is told as one.
-void CellLabelModel::tellAgain(LabelledCell& cell, int32_t label, std::span<const int64_t> log_likelihoods,
+void CellLabelModel::tellAgain(LabelledCell& cell, int32_t label,
+                               std::span<const LabelCandidates::Candidate> candidates,
                                const TeamLabels& labels) {
   cell.told = toldSlot(cell);
   if (labels.of_slot[static_cast<size_t>(cell.told)] != label) {
@@ -103,11 +108,15 @@ void CellLabelModel::tellAgain(LabelledCell& cell, int32_t label, std::span<cons
     }
   }
   cell.told_openings = slots_.openings(cell.told);
-  int64_t other = labels.count > 1 ? kLeast : -cell.num_words * log_group_size_;
-  for (int32_t i = 0; i < labels.count; ++i)
-    if (i != label) other = std::max(other, log_likelihoods[static_cast<size_t>(i)]);
-  cell.certainty =
-      cellCertainty(log_likelihoods[static_cast<size_t>(label)], other, cell.num_words, log_group_size_);
+  int64_t its = 0, other = labels.count > 1 ? kLeast : -cell.num_words * log_group_size_;
+  for (const LabelCandidates::Candidate& candidate : candidates) {
+    if (candidate.label == label) {
+      its = candidate.log_likelihood;
+    } else {
+      other = std::max(other, candidate.log_likelihood);
+    }
+  }
+  cell.certainty = cellCertainty(its, other, cell.num_words, log_group_size_);
 }
 
 }  // namespace shoal::topics

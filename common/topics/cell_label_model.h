@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <map>
 #include <span>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "shoal/topics/label_conditional.h"
 #include "shoal/topics/label_counts.h"
 #include "shoal/topics/learner.h"
+#include "shoal/topics/likeliest_labels.h"
 #include "shoal/topics/neighborhood.h"
 #include "shoal/topics/surprise.h"
 #include "shoal/topics/surprise_scale.h"
@@ -72,9 +74,10 @@ class CellLabelModel final : public Learner {
   /// them. Own topics of one label are one to it; a cell is told as the likeliest of them, or stays what it
   /// was told as when that is one. The certainty is that of the label.
   ///
-  /// Cost: words x (K + topics of others) additions and 8 bytes x labels a cell.
+  /// Cost: words x (K + topics of others) additions a cell, and for its time some 100 bytes.
   bool canLookAgain() const override { return true; }
-  void lookAgain(const TeamTopics& team) override;
+  void lookAgain(
+      const TeamTopics& team, const std::function<void()>& breathe = [] {}) override;
 
   /// Puts the words into their cells and draws the label of each of these cells. These draws are not part of
   /// any budget.
@@ -158,7 +161,7 @@ class CellLabelModel final : public Learner {
   int32_t toldSlot(const LabelledCell& cell) const;
   CellLabel labelOf(const LabelledCell& cell, const std::vector<int32_t>& told_as) const;
   TeamLabels labelsOf(const TeamTopics& team) const;
-  void tellAgain(LabelledCell& cell, int32_t label, std::span<const int64_t> log_likelihoods,
+  void tellAgain(LabelledCell& cell, int32_t label, std::span<const LabelCandidates::Candidate> candidates,
                  const TeamLabels& labels);
   void findTwins();
   void leaveTwins(int32_t slot);

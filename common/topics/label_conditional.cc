@@ -15,6 +15,11 @@ namespace {
 
 __extension__ using Wide = __int128;
 
+// counted / all of it.
+int64_t shareOf(int64_t log_likelihood, int64_t counted, int64_t all) {
+  return static_cast<int64_t>(static_cast<Wide>(log_likelihood) * counted / all);
+}
+
 // log2 of the weights, up to a constant, in units of 2^-16.
 class LogWeights {
  public:
@@ -27,10 +32,7 @@ class LogWeights {
         counted_(std::min(scale.evidence, all_)) {
     SHOAL_DEMAND(alike.size() == log_likelihoods.size() && num_words > 0);
   }
-  int64_t of(size_t k) const {
-    const auto words = static_cast<int64_t>(static_cast<Wide>(log_likelihoods_[k]) * counted_ / all_);
-    return words + coupling_ * alike_[k];
-  }
+  int64_t of(size_t k) const { return shareOf(log_likelihoods_[k], counted_, all_) + coupling_ * alike_[k]; }
 
  private:
   std::span<const int64_t> log_likelihoods_;
@@ -72,6 +74,12 @@ int32_t likeliestLabel(std::span<const int64_t> log_likelihoods, int64_t num_wor
   }
   SHOAL_DEMAND(best >= 0);
   return best;
+}
+
+int64_t weightOfWords(int64_t log_likelihood, int64_t num_words, const ConditionalScale& scale) {
+  SHOAL_DEMAND(num_words > 0);
+  const int64_t all = num_words * kLogOne;
+  return shareOf(log_likelihood, std::min(scale.evidence, all), all);
 }
 
 int32_t drawLabel(std::span<const uint64_t> weights, Random& random) {

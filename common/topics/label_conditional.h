@@ -36,6 +36,9 @@ void weighLabels(std::span<const int64_t> log_likelihoods, int64_t num_words, st
 int32_t likeliestLabel(std::span<const int64_t> log_likelihoods, int64_t num_words,
                        std::span<const int32_t> alike, const ConditionalScale& scale);
 
+/// What the words of a cell say for a label: min(1, e / n) log2 L, in units of 2^-16, as above.
+int64_t weightOfWords(int64_t log_likelihood, int64_t num_words, const ConditionalScale& scale);
+
 /// A label drawn in proportion to its weight; one of them at least is above 0.
 int32_t drawLabel(std::span<const uint64_t> weights, Random& random);
 

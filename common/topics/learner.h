@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -28,10 +29,12 @@ class Learner {
 
   /// Judges every cell anew by what the whole team knows: a topic speaks with the words of all topics of its
   /// label. Changes what is told of cells, and nothing of what is learnt.
+  /// @param breathe  Called every few thousand cells, so that who has other things to do can do them. It must
+  ///                 not touch the learner, nor read what is told of its cells.
   /// @throws std::invalid_argument for words that the learner does not have; std::logic_error from a learner
-  /// that
-  ///         cannot.
-  virtual void lookAgain(const TeamTopics& team);
+  ///         that cannot.
+  virtual void lookAgain(
+      const TeamTopics& team, const std::function<void()>& breathe = [] {});
 
   /// Topics as exact counts, every cell with its label. It reads everything.
   virtual Snapshot snapshot() const = 0;

@@ -2,30 +2,67 @@
 #include "shoal/topics/likeliest_labels.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "shoal/demand.h"
 
 namespace shoal::topics {
+namespace {
 
-std::vector<int32_t> likeliestLabels(const LabelLikelihoods& likelihoods, const Neighborhood& neighborhood,
-                                     const ConditionalScale& scale, int rounds) {
-  const int32_t num_cells = neighborhood.size();
-  SHOAL_DEMAND(std::ssize(likelihoods.num_words) == num_cells);
-  std::vector<int32_t> votes(static_cast<size_t>(likelihoods.num_labels));
+constexpr int32_t kCellsAtOnce = 8192;  // between two breaths
+
+}  // namespace
+
+void LabelCandidates::add(std::span<const int64_t> log_likelihoods, int64_t num_words) {
+  SHOAL_DEMAND(numCells() < neighborhood_.size() && !log_likelihoods.empty());
+  if (num_labels_ == 0) num_labels_ = static_cast<int32_t>(log_likelihoods.size());
+  SHOAL_DEMAND(std::ssize(log_likelihoods) == num_labels_);
+  weights_.clear();
+  int64_t best = std::numeric_limits<int64_t>::min(), second = best;
+  for (const int64_t log_likelihood : log_likelihoods) {
+    const int64_t weight = weightOfWords(log_likelihood, num_words, scale_);
+    weights_.push_back(weight);
+    second = std::max(second, std::min(best, weight));
+    best = std::max(best, weight);
+  }
+  const auto votes = static_cast<int64_t>(neighborhood_.of(numCells()).size());
+  const int64_t least = std::min(second, best - scale_.coupling * votes);
+  for (int32_t k = 0; k < num_labels_; ++k) {
+    const auto i = static_cast<size_t>(k);
+    if (weights_[i] >= least) candidates_.push_back({k, log_likelihoods[i], weights_[i]});
+  }
+  first_.push_back(candidates_.size());
+}
+
+std::vector<int32_t> likeliestLabels(const LabelCandidates& candidates, int rounds,
+                                     const std::function<void()>& breathe) {
+  const int32_t num_cells = candidates.numCells();
+  SHOAL_DEMAND(num_cells == candidates.neighborhood().size());
+  const int64_t coupling = candidates.scale().coupling;
+  std::vector<int32_t> votes(static_cast<size_t>(candidates.numLabels()));
   std::vector<int32_t> label(static_cast<size_t>(num_cells));
   const auto likeliest = [&](int32_t c) {
-    return likeliestLabel(likelihoods.of(c), likelihoods.num_words[static_cast<size_t>(c)], votes, scale);
+    if (c % kCellsAtOnce == 0) breathe();
+    int32_t best = -1;
+    int64_t largest = 0;
+    for (const LabelCandidates::Candidate& candidate : candidates.of(c)) {
+      const int64_t weight = candidate.weight + coupling * votes[static_cast<size_t>(candidate.label)];
+      if (best >= 0 && weight <= largest) continue;
+      best = candidate.label;
+      largest = weight;
+    }
+    return best;
   };
   for (int32_t c = 0; c < num_cells; ++c) label[static_cast<size_t>(c)] = likeliest(c);
   bool changes = true;
   for (int round = 0; round < rounds && changes; ++round) {
     changes = false;
     for (int32_t c = 0; c < num_cells; ++c) {
-      std::ranges::fill(votes, 0);
-      for (const int32_t neighbor : neighborhood.of(c))
-        ++votes[static_cast<size_t>(label[static_cast<size_t>(neighbor)])];
+      const std::span<const int32_t> neighbors = candidates.neighborhood().of(c);
+      for (const int32_t n : neighbors) ++votes[static_cast<size_t>(label[static_cast<size_t>(n)])];
       const int32_t now = likeliest(c);
+      for (const int32_t n : neighbors) votes[static_cast<size_t>(label[static_cast<size_t>(n)])] = 0;
       changes |= now != std::exchange(label[static_cast<size_t>(c)], now);
     }
   }

@@ -34,7 +34,7 @@ int32_t sizeOf(const std::vector<world::WordGroup>& groups) {
 
 }  // namespace
 
-void Learner::lookAgain(const TeamTopics&) {
+void Learner::lookAgain(const TeamTopics&, const std::function<void()>&) {
   throw std::logic_error("this kind of learner does not look again");
 }
 

@@ -214,6 +214,17 @@ TEST(CellLabelLookTest, RefusesWordsThatItDoesNotHave) {
   EXPECT_NO_THROW(look({{99, 1}}));
 }
 
+// Before its cells are compared, and before they are told, beside what likeliestLabels() does.
+TEST(CellLabelLookTest, BreathesAndEndsTheSame) {
+  CellLabelModel model = learnt(), other = model;
+  const TeamTopics team = alone(model.snapshot());
+  int breaths = 0;
+  model.lookAgain(team, [&] { ++breaths; });
+  other.lookAgain(team);
+  EXPECT_GE(breaths, 4);
+  EXPECT_EQ(topicsOf(model.snapshot()), topicsOf(other.snapshot()));
+}
+
 TEST(CellLabelLookTest, AModelOfWordsCannot) {
   TopicModel model({}, 100, 1, RobotId{0});
   EXPECT_FALSE(model.canLookAgain());

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "shoal/random.h"
@@ -18,19 +20,19 @@ const ConditionalScale kScale = ConditionalScale::of(10, 1);  // a tenth of the 
 // Cells in a row, each with log2 likelihoods of its labels.
 struct Row {
   explicit Row(const std::vector<std::vector<double>>& bits) {
-    likelihoods.num_labels = static_cast<int32_t>(bits.front().size());
-    for (size_t c = 0; c < bits.size(); ++c) {
-      neighborhood.insert({static_cast<int32_t>(c), 0, 0});
-      likelihoods.num_words.push_back(kWords);
-      for (const double b : bits[c]) likelihoods.log_likelihoods.push_back(static_cast<int64_t>(b * kLogOne));
+    for (size_t c = 0; c < bits.size(); ++c) neighborhood.insert({static_cast<int32_t>(c), 0, 0});
+    for (const std::vector<double>& of_cell : bits) {
+      std::vector<int64_t> row;
+      for (const double b : of_cell) row.push_back(static_cast<int64_t>(b * kLogOne));
+      candidates.add(row, kWords);
     }
   }
   std::vector<int32_t> likeliest(int rounds) const {
-    return likeliestLabels(likelihoods, neighborhood, kScale, rounds);
+    return likeliestLabels(candidates, rounds, [] {});
   }
 
-  LabelLikelihoods likelihoods;
   Neighborhood neighborhood;
+  LabelCandidates candidates{neighborhood, kScale};
 };
 
 using Labels = std::vector<int32_t>;
@@ -59,16 +61,17 @@ TEST(LikeliestLabelsTest, EveryRoundIsAtLeastAsLikelyAndTheLastIsAMode) {
   Random random(4);
   for (int trial = 0; trial < 60; ++trial) {
     constexpr int32_t kSide = 6, kLabels = 4;
-    LabelLikelihoods likelihoods{.num_labels = kLabels, .log_likelihoods = {}, .num_words = {}};
     Neighborhood neighborhood;
-    for (int32_t c = 0; c < kSide * kSide; ++c) {
-      neighborhood.insert({c / kSide, c % kSide, 0});
-      likelihoods.num_words.push_back(kWords);
-      for (int32_t k = 0; k < kLabels; ++k)
-        likelihoods.log_likelihoods.push_back(-static_cast<int64_t>(random.below(50 * kLogOne)));
+    for (int32_t c = 0; c < kSide * kSide; ++c) neighborhood.insert({c / kSide, c % kSide, 0});
+    LabelCandidates candidates(neighborhood, kScale);
+    std::vector<std::vector<int64_t>> log_likelihoods(kSide * kSide);
+    for (auto& row : log_likelihoods) {
+      for (int32_t k = 0; k < kLabels; ++k) row.push_back(-static_cast<int64_t>(random.below(50 * kLogOne)));
+      candidates.add(row, kWords);
     }
     const auto words = [&](int32_t c, int32_t k) {
-      return static_cast<double>(likelihoods.of(c)[static_cast<size_t>(k)]) / kLogOne * 0.1;
+      return static_cast<double>(log_likelihoods[static_cast<size_t>(c)][static_cast<size_t>(k)]) / kLogOne *
+             0.1;
     };
     const auto alike = [&](const Labels& labels, int32_t c, int32_t k) {
       int32_t votes = 0;
@@ -78,7 +81,7 @@ TEST(LikeliestLabelsTest, EveryRoundIsAtLeastAsLikelyAndTheLastIsAMode) {
     double last = -1e9;
     Labels labels;
     for (const int rounds : {0, 1, 2, 3, 100}) {
-      labels = likeliestLabels(likelihoods, neighborhood, kScale, rounds);
+      labels = likeliestLabels(candidates, rounds, [] {});
       double bits = 0;
       for (int32_t c = 0; c < kSide * kSide; ++c) {
         const int32_t k = labels[static_cast<size_t>(c)];
@@ -95,6 +98,77 @@ TEST(LikeliestLabelsTest, EveryRoundIsAtLeastAsLikelyAndTheLastIsAMode) {
         EXPECT_LE(words(c, k) + alike(labels, c, k), words(c, told) + alike(labels, c, told) + 1e-3);
     }
   }
+}
+
+// All labels of all cells, by the conditional itself.
+Labels byTheDefinition(const std::vector<std::vector<int64_t>>& log_likelihoods,
+                       const std::vector<int64_t>& num_words, const Neighborhood& neighborhood, int rounds) {
+  Labels labels;
+  for (int round = 0; round <= rounds; ++round) {
+    for (size_t c = 0; c < log_likelihoods.size(); ++c) {
+      std::vector<int32_t> votes(log_likelihoods[c].size());
+      if (round > 0)
+        for (const int32_t n : neighborhood.of(static_cast<int32_t>(c)))
+          ++votes[static_cast<size_t>(labels[static_cast<size_t>(n)])];
+      const int32_t now = likeliestLabel(log_likelihoods[c], num_words[c], votes, kScale);
+      if (round == 0) {
+        labels.push_back(now);
+      } else {
+        labels[c] = now;
+      }
+    }
+  }
+  return labels;
+}
+
+// Labels that no votes could help are not kept; the two best are, whose distance is the certainty.
+TEST(LikeliestLabelsTest, WhatIsNotKeptWouldHaveChangedNothing) {
+  Random random(5);
+  size_t num_kept = 0, num_labels = 0;
+  for (int trial = 0; trial < 40; ++trial) {
+    constexpr int32_t kSide = 7;
+    const size_t labels = 1 + random.below(9);
+    Neighborhood neighborhood;
+    for (int32_t c = 0; c < kSide * kSide; ++c) neighborhood.insert({c / kSide, c % kSide, 0});
+    LabelCandidates candidates(neighborhood, kScale);
+    std::vector<std::vector<int64_t>> log_likelihoods(kSide * kSide);
+    std::vector<int64_t> num_words;
+    for (auto& row : log_likelihoods) {
+      num_words.push_back(static_cast<int64_t>(1 + random.below(200)));
+      // In steps, so that some are equal.
+      for (size_t k = 0; k < labels; ++k)
+        row.push_back(-static_cast<int64_t>(random.below(40)) * kLogOne * num_words.back() / 30);
+      candidates.add(row, num_words.back());
+      const auto kept = candidates.of(candidates.numCells() - 1);
+      num_kept += kept.size();
+      num_labels += labels;
+      auto sorted = row;
+      std::ranges::sort(sorted, std::greater<>());
+      std::vector<int64_t> kept_of_it;
+      for (const auto& each : kept) {
+        EXPECT_EQ(each.log_likelihood, row[static_cast<size_t>(each.label)]);
+        kept_of_it.push_back(each.log_likelihood);
+      }
+      std::ranges::sort(kept_of_it, std::greater<>());
+      ASSERT_GE(kept_of_it.size(), std::min<size_t>(2, labels));
+      for (size_t i = 0; i < std::min<size_t>(2, labels); ++i) EXPECT_EQ(kept_of_it[i], sorted[i]);
+    }
+    for (const int rounds : {0, 1, 5})
+      EXPECT_EQ(likeliestLabels(candidates, rounds, [] {}),
+                byTheDefinition(log_likelihoods, num_words, neighborhood, rounds));
+  }
+  EXPECT_LT(num_kept, num_labels * 2 / 3);
+}
+
+TEST(LikeliestLabelsTest, BreathesNowAndThen) {
+  constexpr int32_t kCells = 30'000;
+  Neighborhood neighborhood;
+  for (int32_t c = 0; c < kCells; ++c) neighborhood.insert({c, 0, 0});
+  LabelCandidates candidates(neighborhood, kScale);
+  for (int32_t c = 0; c < kCells; ++c) candidates.add(std::vector<int64_t>{0, -kLogOne}, kWords);
+  int breaths = 0;
+  likeliestLabels(candidates, 0, [&] { ++breaths; });
+  EXPECT_EQ(breaths, 4);
 }
 
 }  // namespace
