@@ -74,7 +74,7 @@ Piece moved(Piece piece, RobotId robot, const std::array<int32_t, 3>& brick) {
 std::vector<Piece> wholePieces(RobotId robot, int32_t observation, Random& random) {
   std::vector<Piece> pieces;
   const auto seed = static_cast<uint64_t>(100 * number(robot) + observation);
-  for (int b = 0; b < 3; ++b) {
+  for (int b = 0; b < 2; ++b) {
     pieces.push_back(moved(planarBrick(5, 10, 0.1 * b, seed + 1000 * static_cast<uint64_t>(b)), robot,
                            {b - 1 + number(robot), -1, b / 2}));
     mapping::CertaintyPart certainty;

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Probabilities of several contexts, mixed into one. Integers only, as everywhere in the format."""
+from operator import mul
 
 _MOST = 2047
 _SQUASH = (22, 36, 60, 98, 162, 267, 439, 720, 1179, 1921, 3108, 4971, 7812, 11955, 17625, 24743, 32768, 40793, 47911,
@@ -7,12 +8,8 @@ _SQUASH = (22, 36, 60, 98, 162, 267, 439, 720, 1179, 1921, 3108, 4971, 7812, 119
 _BELIEF = (0, 110, 160, 190, 210, 225, 236, 245)
 
 
-def _clamp(value, low, high):
-    return low if value < low else high if value > high else value
-
-
 def squash(odds):
-    odds = _clamp(odds, -_MOST, _MOST) + 2048
+    odds = (-_MOST if odds < -_MOST else _MOST if odds > _MOST else odds) + 2048
     i, rest = odds >> 7, odds & 127
     return (_SQUASH[i] * (128 - rest) + _SQUASH[i + 1] * rest + 64) >> 7
 
@@ -29,8 +26,9 @@ def _make_stretch():
 _STRETCH = _make_stretch()
 
 
-def _towards_zero(value, divisor):
-    return value // divisor if value >= 0 else -(-value // divisor)
+# What a context says, by how sure it is and by its probability; // rounds down, the format towards zero.
+_ODDS = [[odds * belief // 256 if odds >= 0 else -(-odds * belief // 256) for odds in _STRETCH] for belief in _BELIEF + (256,)]
+_SURE = len(_BELIEF)
 
 
 class Contexts(dict):
@@ -46,18 +44,20 @@ class Mixer:
         self.count, self.sets = count, {}
 
     def bit(self, bits, contexts, which):
-        weights = self.sets.setdefault(which, [14336] * self.count)
-        odds, total = [], 0
-        for weight, (one, seen) in zip(weights, contexts):
-            belief = _BELIEF[seen] if seen < len(_BELIEF) else 256
-            odds.append(_towards_zero(_STRETCH[one >> 4] * belief, 256))
-            total += weight * odds[-1]
-        one = squash(_clamp(_towards_zero(total, 65536), -_MOST, _MOST))
-        bit = bits.plain(65536 - _clamp(one, 32, 65504))
+        """One bit; nearly all of a reader's time is spent here, so calls are few. int() rounds towards zero, and what it is
+        given is exact: quotients of numbers below 2 ** 53 that are no integers do not round to one."""
+        weights = self.sets.get(which)
+        if weights is None:
+            weights = self.sets[which] = [14336] * self.count
+        odds = [_ODDS[seen if seen < _SURE else _SURE][one >> 4] for one, seen in contexts]
+        one = squash(int(sum(map(mul, weights, odds)) / 65536))
+        bit = bits.plain(65536 - (32 if one < 32 else 65504 if one > 65504 else one))
         error = (65536 if bit else 0) - one
-        for k, context in enumerate(contexts):
-            weights[k] += _towards_zero(odds[k] * error, 1 << 15)
-            context[0] += _towards_zero(((65535 if bit else 0) - context[0]) * 2, 2 * context[1] + 3)
-            if context[1] < 250:
-                context[1] += 1
+        target = 65535 if bit else 0
+        self.sets[which] = [weight + int(odd * error / 32768) for weight, odd in zip(weights, odds)]
+        for context in contexts:
+            one, seen = context
+            context[0] = one + int((target - one) * 2 / (2 * seen + 3))
+            if seen < 250:
+                context[1] = seen + 1
         return bit

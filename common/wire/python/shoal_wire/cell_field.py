@@ -53,11 +53,20 @@ class CellField:
 _AROUND = ((-1, 0), (0, -1), (-1, -1), (-1, 1), (-2, 0), (0, -2))
 
 
-def _height(column, z):
-    """That of a column's cells, given by ascending heights, which is nearest to z, the lower of two, or None."""
-    if len(column) < 2:
-        return column[0] if column else None
-    return min(column, key=lambda height: (abs(height - z), height))
+def _heights(around, z):
+    """That of each column's cells, given by ascending heights, which is nearest to z, the lower of two, or None."""
+    return [None if not column else column[0] if len(column) == 1 else min(column, key=lambda h: (abs(h - z), h))
+            for column in around]
+
+
+def _step(seen, z):
+    return 0 if seen is None else 1 if seen < z - 3 else 7 if seen > z + 3 else seen - z + 4
+
+
+def _trend(seen, onward, back, z):
+    if seen is None or onward is None or back is None:
+        return 0
+    return min(max(seen + onward - back - z, -4), 3) + 5
 
 
 class Geometry:
@@ -86,20 +95,19 @@ class Geometry:
                         state = 2
 
     def _contexts(self, around, z, began, state):
-        def step(seen):
-            return 0 if seen is None else min(max(seen - z, -3), 3) + 4
-
-        def trend(seen, onward, back):
-            return 0 if None in (seen, onward, back) else min(max(seen + onward - back - z, -4), 3) + 5
-
-        h_west, h_south, h_southwest, h_northwest, h_west2, h_south2 = (_height(column, z) for column in around)
-        west, south, southwest, northwest = step(h_west), step(h_south), step(h_southwest), step(h_northwest)
+        heights = h_west, h_south, h_southwest, h_northwest, h_west2, h_south2 = _heights(around, z)
+        west, south, southwest, northwest, west2, south2 = [_step(height, z) for height in heights]
         same = ((west == 4) | (south == 4) << 1 | (southwest == 4) << 2 | (west > 4) << 3 | (south > 4) << 4 |
                 began << 5)
-        trends = (trend(h_west, h_south, h_southwest), trend(h_west, h_west, h_west2),
-                  trend(h_south, h_south, h_south2))
-        pattern = tuple(height in column for column in around[:4] for height in (z - 1, z, z + 1))
+        trends = (_trend(h_west, h_south, h_southwest, z), _trend(h_west, h_west, h_west2, z),
+                  _trend(h_south, h_south, h_south2, z))
+        pattern = 0  # which of the four nearest columns have a cell below, beside, above
+        for column in around[:4]:
+            pattern <<= 3
+            for height in column:
+                if -2 < height - z < 2:
+                    pattern |= 1 << (height - z + 1)
         return (self.alike[same], self.heights[west, south, state], self.diagonals[southwest, northwest, west, state],
                 self.corners[west, south, southwest, northwest, state],
-                self.lines[west, south, step(h_west2), step(h_south2), state], self.slopes[trends, state],
+                self.lines[west, south, west2, south2, state], self.slopes[trends, state],
                 self.patterns[pattern, state])

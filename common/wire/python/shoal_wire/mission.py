@@ -38,6 +38,12 @@ class _Lists:
         return next((digest for digest in reversed(self.by_digest) if self.whole(digest) is not None), None)
 
 
+def _content(data):
+    """All of a message but when it was sent and its checksum."""
+    fixed = LAYOUT[peek(data)[0]].size
+    return data[:8], data[16:fixed - 6], data[fixed:]
+
+
 class Mission:
     """What the messages of one mission add up to. What is bad is counted by reason in `refused` and left out."""
 
@@ -48,7 +54,8 @@ class Mission:
         self.heard = 0
         self.heartbeats = {}  # node -> the latest
         self._versions = {}   # (robot, kind, index) -> {(epoch, observation): [(raw, place in it), as they came]}
-        self._seen = set()
+        self._times = collections.Counter()    # content -> how often it was heard
+        self._bad = {}        # content -> Counter of what is wrong with it, for each time that it is heard
         self._decoded = {}    # raw -> its pieces, or None when it is bad
         self._usable = None
         self._digests = {}
@@ -97,10 +104,11 @@ class Mission:
         self._edits.setdefault(edit_hash(m), m)
 
     def _hear_piece(self, m, data):
-        content = (data[:8], data[16:LAYOUT[m["kind"]].size - 6], data[LAYOUT[m["kind"]].size:])
-        if content in self._seen:  # all but when it was sent
+        content = _content(data)
+        self._times[content] += 1
+        if self._times[content] > 1:
+            self.refused.update(self._bad.get(content, ()))
             return
-        self._seen.add(content)
         for place, (index, version, _) in enumerate(keys_of(data)):
             versions = self._versions.setdefault((m["robot"], m["kind"], index), {})
             versions.setdefault(version, []).append((data, place))
@@ -152,19 +160,25 @@ class Mission:
                 parts[m["part"]] = m
                 good.append((data, place))
             else:
-                self.refused["conflict"] += 1
+                self._refuse(data, "conflict")
         raw[:] = good
         return parts
 
     def _decode(self, data):
-        """The pieces of a message, decoded once; None, and counted once, when it is bad."""
+        """The pieces of a message, decoded once; None when it is bad."""
         if data not in self._decoded:
             try:
                 self._decoded[data] = pieces_of(decode(data))
             except BadMessage as error:
-                self.refused[error.reason] += 1
+                self._refuse(data, error.reason)
                 self._decoded[data] = None
         return self._decoded[data]
+
+    def _refuse(self, data, reason):
+        """Counts a message that turns out bad as often as it was heard, and will be."""
+        content = _content(data)
+        self._bad.setdefault(content, collections.Counter())[reason] += 1
+        self.refused[reason] += self._times[content]
 
     @property
     def cell_size_m(self):
