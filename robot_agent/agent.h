@@ -1,30 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <functional>
-#include <map>
-#include <memory>
 #include <optional>
-#include <set>
-#include <span>
 #include <string>
-#include <vector>
 
 #include "fusion_node/mission_state.h"
-#include "fusion_node/repair.h"
-#include "fusion_node/silence_alarm.h"
-#include "robot_agent/background_save.h"
 #include "robot_agent/checkpoint.h"
+#include "robot_agent/checkpoint_saver.h"
+#include "robot_agent/listener.h"
+#include "robot_agent/mapper.h"
+#include "robot_agent/publisher.h"
+#include "robot_agent/sharper_pictures.h"
+#include "robot_agent/timekeeper.h"
+#include "robot_agent/voice.h"
 #include "shoal/comms/bus.h"
 #include "shoal/comms/mission_clock.h"
-#include "shoal/comms/sender.h"
-#include "shoal/mapping/belief_pieces.h"
-#include "shoal/mapping/poses_file.h"
 #include "shoal/robot/explorer.h"
-#include "shoal/wire/picture_pieces.h"
-#include "shoal/wire/piece_codec.h"
 #include "shoal/world/source.h"
 
 namespace shoal::robot_agent {
@@ -59,6 +52,9 @@ struct AgentOptions {
 /// have landed it looks at its map again, by what the team knows (robot/team_topics.h), and tells what it now
 /// takes for something else: so what it tells in the end is a function of what all have learnt, whenever it
 /// heard of it.
+///
+/// What it learns flows one way: source -> Mapper -> Publisher -> CheckpointSaver -> Voice -> bus. What
+/// others say comes in by the Listener, while the Timekeeper lets time pass.
 class Agent {
  public:
   /// `source` and `bus` outlive the agent.
@@ -72,70 +68,35 @@ class Agent {
 
  private:
   void fly();
-  void awaitTeam();
-  bool willLookAgain() const {
-    return options_.looks_again && explorer_.canLookAgain() && !explorer_.hasLookedAgain() && !path_.empty();
-  }
-  void lookAgain();
-  void awaitObservation();
-  void linger();
-  void resume();
-  void save();
-  void lookAtSave(bool waits);
-  void awaitSaved();
-  Checkpoint snapshot();
   void takeIn(const world::Observation& observation);
-  void publish();
-  void publishAll();
-  void publish(const std::vector<mapping::Piece>& changed);
-  void publishPictures();
-  void forget(const std::string& key);
-  void say(const mapping::Piece& part);
-  void say(const mapping::Piece& part, wire::Bytes message);
-  void sayWhenSaved(const mapping::Piece& part, wire::Bytes message);
-  bool isHolding() const { return !unsaid_.empty() || !being_saved_.empty(); }
-  void offer(const mapping::Piece& part, wire::Bytes message);
-  void sharpenWanted();
-  void passTimeUntil(int64_t to_us);
-  void passSecond();
-  void listen(int timeout_ms);
-  void breathe();
-  bool isHeard() const;
-  std::optional<comms::Packet> join(std::span<const comms::SendQueue::Next> together) const;
+  void awaitTeam();
+  bool willLookAgain() const;
+  void lookAgain();
+  void linger();
   void write();
-  comms::Packet heartbeat(int64_t now_us);
 
-  AgentOptions options_;
-  std::string name_;
+  bool isRepeatable() const { return !options_.live && !mapper_.explorer().hasLookedAgain(); }
+  void publishAll();
+  void sharpenWanted();
+  void answer();
+
+  void resume(const Checkpoint& checkpoint);
+  Checkpoint snapshot();
+  wire::Heartbeat heartbeat(int64_t now_us);
+
+  const AgentOptions options_;
   world::ObservationSource& source_;
-  comms::Bus& bus_;
-  robot::Explorer explorer_;
-  mapping::BeliefChanges changes_;
-  wire::PictureChanges picture_changes_;
-  std::set<uint64_t> wanted_;                       // keys of pieces of ours that nobody has made yet
-  mapping::LocalBelief belief_;                     // in flight without its cells
-  mapping::BeliefStore own_;                        // what was said, for its digest
-  std::map<mapping::PieceKey, int32_t> num_parts_;  // keys in the send queue
-  std::map<std::string, mapping::Piece, std::less<>> said_;  // by its keys
-  // What could not be said again the same way after a crash, and so waits until a checkpoint has it: for one
-  // to be begun, and to be done. By its keys.
-  std::map<std::string, wire::EncodedPart> unsaid_, being_saved_;
-  BackgroundSave saving_;
-  fusion_node::MissionState others_;
   comms::MissionClock clock_;
-  comms::Sender sender_;
-  fusion_node::Repair repair_;
-  std::vector<mapping::StampedPose> path_;
+  fusion_node::MissionState state_;  // what all have said, as far as it was heard
+  Mapper mapper_;
+  SharperPictures sharper_;
+  Voice voice_;
+  CheckpointSaver saver_;
+  Publisher publisher_;
+  Listener listener_;
+  Timekeeper time_;
   wire::Phase phase_ = wire::Phase::kFlying;
-  double total_ms_ = 0;
-  std::chrono::steady_clock::time_point breathed_;
-  fusion_node::SilenceAlarm silence_;
-  bool warned_of_twin_ = false;
-  bool epoch_is_kept_ = false;
-  size_t warned_of_missions_ = 0;
+  double total_ms_ = 0;  // of wall time, that images took
 };
-
-/// One robot that explores alone and tells nobody: the paper's comparator.
-void runAlone(const AgentOptions& options, world::ObservationSource& source);
 
 }  // namespace shoal::robot_agent

@@ -20,6 +20,7 @@
 #include "fusion_node/process.h"
 #include "robot_agent/agent.h"
 #include "robot_agent/camera_stream.h"
+#include "robot_agent/lone_robot.h"
 #include "shoal/comms/camera_channels.h"
 #include "shoal/comms/lcm_bus.h"
 #include "shoal/comms/lcm_url.h"
@@ -180,7 +181,7 @@ int run(Flags flags) {
   if (flags.single) options.explorer.keeps_pictures = false;  // nobody to show them to
   world::ObservationSource& source = *from.source;
   if (flags.single) {
-    robot_agent::runAlone(options, source);
+    robot_agent::runAlone(options.explorer, source, options.out_dir);
     sayTroubles(source);
     return 0;
   }
