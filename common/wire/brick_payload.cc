@@ -5,6 +5,7 @@
 #include "shoal/wire/cells_coder.h"
 #include "shoal/wire/cut.h"
 #include "shoal/wire/limits.h"
+#include "shoal/wire/part_coder.h"
 #include "shoal/wire/payloads.h"
 
 namespace shoal::wire {
@@ -36,14 +37,7 @@ class HeaderCoder {
                                            : around(coder, z_, before[2], z);
       observation = around(coder, version_, observation_, observation);
     }
-    if (coder.bit(is_part_, piece.num_parts > 1 ? 1 : 0) != 0) {
-      piece.num_parts = static_cast<int32_t>(coder.direct(static_cast<uint64_t>(piece.num_parts), 8));
-      piece.part = static_cast<int32_t>(coder.direct(static_cast<uint64_t>(piece.part), 8));
-      if (piece.num_parts < 2) return false;
-    } else {
-      piece.num_parts = 1;
-      piece.part = 0;
-    }
+    if (!parts_.code(coder, piece)) return false;
     before_ = piece.key.index;
     observation_ = observation;
     return isBrick(piece.key.index) && observation >= 0;
@@ -67,7 +61,7 @@ class HeaderCoder {
   std::array<int32_t, 3> before_{};
   int32_t row_y_ = 0, observation_ = 0;
   SmallNumber x_, y_, row_, above_, z_, version_;
-  AdaptiveBit is_part_{64000, 10};
+  PartCoder parts_;
 };
 
 // Which bricks of what versions, then which of their cells. `ends` gets how many cells there are up to each

@@ -7,6 +7,7 @@
 #include "shoal/demand.h"
 #include "shoal/wire/limits.h"
 #include "shoal/wire/numbers.h"
+#include "shoal/wire/part_coder.h"
 #include "shoal/wire/payloads.h"
 
 namespace shoal::wire {
@@ -32,7 +33,7 @@ int64_t unitOf(const TopicPart& topic) {
 template <typename Coder>
 bool codeHeaders(Coder& coder, std::vector<Piece>& pieces, std::vector<int32_t>& num_words) {
   SmallNumber more, gap, version;
-  AdaptiveBit is_part{64000, 10};
+  PartCoder parts;
   LongNumber words;
   const size_t count = size_t{more.code(coder, static_cast<uint32_t>(pieces.size() - 1))} + 1;
   if (count > kMaxTopicsPerMessage) return false;
@@ -51,14 +52,7 @@ bool codeHeaders(Coder& coder, std::vector<Piece>& pieces, std::vector<int32_t>&
     if (id > world::kMaxTopicId || observation < 0 || observation > kMaxCount) return false;
     piece.key.index[0] = static_cast<int32_t>(id);
     piece.version.observation = static_cast<int32_t>(observation);
-    if (coder.bit(is_part, piece.num_parts > 1 ? 1 : 0) != 0) {
-      piece.num_parts = static_cast<int32_t>(coder.direct(static_cast<uint64_t>(piece.num_parts), 8));
-      piece.part = static_cast<int32_t>(coder.direct(static_cast<uint64_t>(piece.part), 8));
-      if (piece.num_parts < 2) return false;
-    } else {
-      piece.num_parts = 1;
-      piece.part = 0;
-    }
+    if (!parts.code(coder, piece)) return false;
     const uint64_t own_words = words.code(coder, static_cast<uint64_t>(num_words[i]));
     if (own_words > kMaxWordsPerMessage || coder.overrun()) return false;
     num_words[i] = static_cast<int32_t>(own_words);
