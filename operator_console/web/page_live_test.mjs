@@ -97,9 +97,9 @@ try {
   assert.ok((await command("labels", "--node", state, "--json")).labels.some((l) => l.name === "sand & <b>rubble</b>"));
   assert.ok(await other.locator("#undo").isHidden(), "who has no key changes nothing");
 
-  // A laptop sleeps for half a minute: all of its browser stands still, and its lines die without a word to it, as when a radio is
-  // off; whoever says something on one afterwards is told so, whoever listens is not. Awake, it has what was decided meanwhile, and
-  // hears of what is decided then.
+  // A laptop sleeps: all of its browser stands still, and its lines die without a word to it, as when a radio is off; whoever says
+  // something on one afterwards is told so, whoever listens is not. Awake, it knows by its clock that it slept: it does not wait for
+  // the lines, has what was decided meanwhile, and hears of what is decided then.
   const lines = new Set();
   const radio = createServer((near) => {
     const line = { far: connect(port, "127.0.0.1"), isDead: false };
@@ -114,18 +114,30 @@ try {
   await until(async () => (await text("#legend", lid)).includes("sand & <b>rubble</b>"), "the laptop shows the mission");
   const second = await page.evaluate(() => document.querySelectorAll("#legend .name")[1].dataset.label);
   const radioOff = () => { for (const line of lines) { line.isDead = true; line.far.destroy(); } };
+  const sleep = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
+  const call = (name) => command("name", second, name, "--node", state, "--json");
+  const hasCaughtUp = async (name) => (await text("#legend", lid)).includes(name) && (await text("#phase", lid)) === "live";
+  await call("mud");
+  await until(() => hasCaughtUp("mud"), "it hears of a name");
   radioOff();
-  await new Promise((resolve) => setTimeout(resolve, 500)); // what came before is read, not on waking
+  await sleep(2500); // what came before is read, and asked for, not on waking
   process.kill(-laptop.process().pid, "SIGSTOP");
   radioOff(); // a line that it began meanwhile
-  await command("name", second, "dark mud", "--node", state, "--json");
+  await call("dark mud");
   await until(async () => (await text("#legend")).includes("dark mud"), "who is awake hears of it");
-  await new Promise((resolve) => setTimeout(resolve, 31000));
+  await sleep(9000);
   process.kill(-laptop.process().pid, "SIGCONT");
-  await until(async () => (await text("#legend", lid)).includes("dark mud") && (await text("#phase", lid)) === "live", "the laptop has caught up");
+  const woke = Date.now();
+  await until(() => hasCaughtUp("dark mud"), "the laptop has caught up");
+  assert.ok(Date.now() - woke < 8000, `it caught up after ${Date.now() - woke} ms, no sooner than by waiting for its lines`);
   assert.equal(await cells(lid), whole);
-  await command("name", second, "grey mud", "--node", state, "--json");
-  await until(async () => (await text("#legend", lid)).includes("grey mud"), "and hears of what is new");
+  await call("wet mud");
+  await until(() => hasCaughtUp("wet mud"), "and hears of what is new");
+
+  // A cable is pulled while it is awake: nothing tells it, but the server is silent for too long.
+  radioOff();
+  await call("grey mud");
+  await until(() => hasCaughtUp("grey mud"), "the page has found another line");
   await laptop.close();
   laptop = null;
   radio.close();
@@ -176,4 +188,5 @@ try {
   for (const child of started) if (child.exitCode === null && child.signalCode === null) child.kill("SIGKILL");
   await Promise.all(started.map((child) => child.gone));
   rmSync(top, { recursive: true });
+  process.exit(); // whatever lines are open
 }

@@ -123,17 +123,20 @@ async function fetchTruth(): Promise<void> {
 }
 
 // The server says something every ten seconds. When it does not, the line is dead and nobody has told this end: a
-// machine that slept, a cable that was pulled.
-const DEAD_MS = 25000, HUNG_MS = 60000;
+// cable that was pulled. A look that comes much later than it was due says that the machine slept, and its lines are
+// not waited for; but no browser is on time for a page that nobody sees.
+const DEAD_MS = 25000, HUNG_MS = 60000, LOOK_MS = 2000, LATE_MS = 5000;
 function listen(): void {
   const stream = new EventSource("/api/stream");
-  let heard = Date.now();
+  let heard = Date.now(), due = heard + LOOK_MS, wasHidden = document.hidden;
   const watch = setInterval(() => {
-    if (fetching && Date.now() > fetchingSince + HUNG_MS) hangUp();
-    if (Date.now() < heard + DEAD_MS) return;
+    const now = Date.now(), slept = now > due + LATE_MS && !wasHidden && !document.hidden;
+    due = now + LOOK_MS; wasHidden = document.hidden;
+    if (fetching && now > fetchingSince + HUNG_MS) hangUp();
+    if (!slept && now < heard + DEAD_MS) return;
     clearInterval(watch); stream.close();
     hangUp(); listen();
-  }, 2000);
+  }, LOOK_MS);
   stream.addEventListener("ping", () => (heard = Date.now()));
   stream.onmessage = (message) => {
     heard = Date.now();
