@@ -81,7 +81,7 @@ void giveNames(std::vector<LabelSummary>& rows, const Judgement& judgement,
 
 struct ReadTile {
   ReadTile(const TileIndex& at, const MapTile& what, const LabelTable& label) : index(at), tile(&what) {
-    for (size_t u = 0; u < what.numUtterances(); ++u) labels.push_back(label.of(what.utterance(u).voice));
+    what.appendLabels(label, labels);
   }
   TileIndex index;
   const MapTile* tile;

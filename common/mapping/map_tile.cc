@@ -48,13 +48,6 @@ void storeRank(std::byte* ranks, size_t i, size_t rank, uint32_t value) {
   store(value);
 }
 
-template <class Rank>
-void labelPlaces(const std::byte* ranks, const world::GlobalLabel* of, world::GlobalLabel* labels) {
-  std::array<Rank, kTilePlaces> rank;
-  std::memcpy(rank.data(), ranks, sizeof rank);
-  for (size_t i = 0; i < kTilePlaces; ++i) labels[i] = of[rank[i]];
-}
-
 }  // namespace
 
 struct MapTile::Said {
@@ -229,17 +222,8 @@ std::span<const std::byte> MapTile::shown(size_t sheet) const {
   return {memory_.data() + sheetAt(sheet), kTilePlaces * (rank_ + 1u)};
 }
 
-void MapTile::label(const LabelTable& table, world::GlobalLabel nothing, std::vector<world::GlobalLabel>& of,
-                    world::GlobalLabel* labels) const {
-  of.resize(num_utterances_ + size_t{1});
-  of[0] = nothing;
-  for (size_t u = 0; u < num_utterances_; ++u) of[u + 1] = table.of(voices()[u]);
-  for (size_t s = 0; s < num_sheets_; ++s, labels += kTilePlaces) {
-    const std::byte* const ranks = memory_.data() + sheetAt(s);
-    if (rank_ == 1) labelPlaces<uint8_t>(ranks, of.data(), labels);
-    if (rank_ == 2) labelPlaces<uint16_t>(ranks, of.data(), labels);
-    if (rank_ == 4) labelPlaces<uint32_t>(ranks, of.data(), labels);
-  }
+void MapTile::appendLabels(const LabelTable& table, std::vector<world::GlobalLabel>& labels) const {
+  for (const Voice& voice : voices()) labels.push_back(table.of(voice));
 }
 
 void MapTile::count(const TileIndex& index) {

@@ -88,12 +88,8 @@ class MapTile {
   /// The number of what is said of every place, from 1, 0 where nothing is said, in so many bytes as the
   /// tile's numbers need; then the bytes of certainty.
   std::span<const std::byte> shown(size_t sheet) const;
-  /// The label of every place of every sheet, one sheet after the other.
-  /// @param nothing  stands where nothing is said.
-  /// @param of       by utterance: scratch.
-  /// @param labels   numSheets() x kTilePlaces.
-  void label(const LabelTable& table, world::GlobalLabel nothing, std::vector<world::GlobalLabel>& of,
-             world::GlobalLabel* labels) const;
+  /// Appends the label of every utterance, by its number: a cell has that of its utterance.
+  void appendLabels(const LabelTable& table, std::vector<world::GlobalLabel>& labels) const;
   /// @}
 
   /// The outcome of count(), ascending by voice.

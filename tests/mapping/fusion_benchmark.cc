@@ -10,8 +10,10 @@
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -238,8 +240,20 @@ std::map<TileIndex, MapTile> tilesOfAll(Scene scene) {
   return tiles;
 }
 
-// Ours: the newest of every cell with its time, robot, topic and certainty, and its label in a column beside.
-template <bool is_labelled>
+// The label of every place of a tile, a number each.
+template <class Rank>
+GlobalLabel* writeColumn(const MapTile& tile, const GlobalLabel* of, GlobalLabel* column) {
+  for (size_t s = 0; s < tile.numSheets(); ++s) {
+    std::array<Rank, kTilePlaces> rank;
+    std::memcpy(rank.data(), tile.shown(s).data(), sizeof rank);
+    for (const Rank r : rank) *column++ = of[r];
+  }
+  return column;
+}
+
+// Ours: the newest of every cell with its time, robot, topic and certainty, and a label for all that is said
+// in a tile, as FusedMap reads it; with a column, a label for every cell as well, written beside.
+template <bool has_column>
 void Fold(benchmark::State& state, Scene scene, bool warm) {
   LabelTable labels;
   for (int32_t r = 0; r < kRobots; ++r)
@@ -248,7 +262,8 @@ void Fold(benchmark::State& state, Scene scene, bool warm) {
   std::map<TileIndex, MapTile> tiles = tilesOfAll(scene);
   state.counters["MB"] = static_cast<double>(heldBytes() - before) * 1e-6;
   struct Merged {
-    std::unique_ptr<GlobalLabel[]> labels;  // of one sheet after the other
+    std::vector<GlobalLabel> labels;        // of what tiles say, each from what stands for nothing
+    std::unique_ptr<GlobalLabel[]> column;  // of one sheet after the other
     std::unique_ptr<std::byte[]> newest;
   };
   std::vector<MapTile*> row;
@@ -258,20 +273,25 @@ void Fold(benchmark::State& state, Scene scene, bool warm) {
     num_sheets += tile.numSheets();
     for (size_t s = 0; s < tile.numSheets(); ++s) num_bytes += tile.shown(s).size();
   }
-  std::vector<GlobalLabel> of;
   run<Merged>(state, kRobots * double{kWindow} * kWindow, warm, [&](Merged& merged) {
-    if (!merged.labels)
-      merged.labels = std::make_unique_for_overwrite<GlobalLabel[]>(num_sheets * kTilePlaces);
+    if (has_column && !merged.column)
+      merged.column = std::make_unique_for_overwrite<GlobalLabel[]>(num_sheets * kTilePlaces);
     if (!warm) merged.newest = std::make_unique_for_overwrite<std::byte[]>(num_bytes);
-    GlobalLabel* label = merged.labels.get();
+    GlobalLabel* column = merged.column.get();
+    merged.labels.clear();
     std::byte* newest = merged.newest.get();
     for (size_t t = 0; t < row.size(); ++t) {
       MapTile& tile = *row[t];
       if (t + 8 < row.size()) __builtin_prefetch(row[t + 8]);
       if (t + 4 < row.size()) row[t + 4]->prefetch();
       tile.fold({});
-      if (is_labelled) tile.label(labels, GlobalLabel{-1}, of, label);
-      label += tile.numSheets() * kTilePlaces;
+      const size_t first = merged.labels.size();
+      merged.labels.push_back(GlobalLabel{-1});
+      tile.appendLabels(labels, merged.labels);
+      const GlobalLabel* const of = merged.labels.data() + first;
+      const bool is_narrow = tile.numUtterances() <= UINT8_MAX;
+      if (has_column)
+        column = is_narrow ? writeColumn<uint8_t>(tile, of, column) : writeColumn<uint16_t>(tile, of, column);
       for (size_t s = 0; s < tile.numSheets() && !warm; ++s)  // the tiles' own memory would be fresh too
         newest = std::ranges::copy(tile.shown(s), newest).out;
     }
@@ -405,10 +425,10 @@ BENCHMARK(WholeFusedMapFromPieces)->Unit(benchmark::kMillisecond)->Iterations(3)
   IN_SCENE(Structure, rough_warm, Scene::kRough, true, iterations);    \
   IN_SCENE(Structure, flat_cold, Scene::kFlat, false, iterations);     \
   IN_SCENE(Structure, flat_warm, Scene::kFlat, true, iterations)
-constexpr auto Tiles = Fold<true>;
-constexpr auto TilesUnlabelled = Fold<false>;
+constexpr auto Tiles = Fold<false>;
+constexpr auto TilesWithColumn = Fold<true>;
 BOTH_WAYS(Tiles, 5);
-BOTH_WAYS(TilesUnlabelled, 5);
+BOTH_WAYS(TilesWithColumn, 5);
 constexpr auto UnorderedMapRows = UnorderedMap<Order::kLawnmower>;
 constexpr auto UnorderedMapLeaves = UnorderedMap<Order::kLeaves>;
 constexpr auto UnorderedMapScattered = UnorderedMap<Order::kScattered>;
@@ -425,9 +445,10 @@ BOTH_WAYS(OctoMapScattered, 1);
 BOTH_WAYS(OctoMapTrees, 1);
 #endif
 
-const char* const kNames[] = {
-    "OneMoreBrick",          "WholeFusedMap", "Tiles",         "UnorderedMapRows", "UnorderedMapLeaves",
-    "UnorderedMapScattered", "OctoMapRows",   "OctoMapLeaves", "OctoMapScattered", "OctoMapTrees"};
+const char* const kNames[] = {"OneMoreBrick",          "WholeFusedMap",    "Tiles",
+                              "TilesWithColumn",       "UnorderedMapRows", "UnorderedMapLeaves",
+                              "UnorderedMapScattered", "OctoMapRows",      "OctoMapLeaves",
+                              "OctoMapScattered",      "OctoMapTrees"};
 
 }  // namespace
 

@@ -56,22 +56,19 @@ void expectEqual(MapTile& tile, const PlainTile& plain, const std::set<RobotId>&
   tile.fold(excluded);
   tile.count(kIndex);
   const auto expected = plain.newest(excluded);
-  std::vector<GlobalLabel> labels(tile.numSheets() * kTilePlaces), of;
+  std::vector<GlobalLabel> labels{GlobalLabel{-5}};  // they are appended
   LabelTable table;
   table.set({RobotId{1}, TopicId{2}}, GlobalLabel{77});
-  tile.label(table, GlobalLabel{-5}, of, labels.data());
+  tile.appendLabels(table, labels);
+  ASSERT_EQ(labels.size(), 1 + tile.numUtterances());
 
   std::map<Place, PlainTile::Shown> shown;
   for (size_t s = 0; s < tile.numSheets(); ++s) {
     for (size_t place = 0; place < kTilePlaces; ++place) {
       MapTile::Newest cell;
-      const GlobalLabel label = labels[s * kTilePlaces + place];
-      if (!tile.read(s, place, cell)) {
-        ASSERT_EQ(label, GlobalLabel{-5});
-        continue;
-      }
+      if (!tile.read(s, place, cell)) continue;
       const Utterance said = tile.utterance(cell.utterance);
-      ASSERT_EQ(label, table.of(said.voice));
+      ASSERT_EQ(labels[1 + cell.utterance], table.of(said.voice));
       const bool is_once =
           shown.emplace(Place{static_cast<uint8_t>(place), cell.height}, PlainTile::Shown{said, cell.steps})
               .second;
