@@ -37,7 +37,7 @@ topics::TeamTopics teamTopics(const mapping::BeliefStore& heard, world::RobotId 
     if (topic.robot == self) {
       team.own.emplace(topic.id, clustering.label[i]);
     } else if (!isTooLarge(topic.words)) {
-      team.others.push_back({clustering.label[i], topic.words});
+      team.others.push_back({topic.robot, clustering.label[i], topic.words});
     }
   }
   if (team.own.empty()) return {};

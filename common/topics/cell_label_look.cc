@@ -2,12 +2,12 @@
 // CellLabelModel::lookAgain(): what is told of cells, by the topics of the whole team.
 #include <algorithm>
 #include <limits>
-#include <optional>
 #include <stdexcept>
 #include <string>
 
 #include "shoal/topics/cell_certainty.h"
 #include "shoal/topics/cell_label_model.h"
+#include "shoal/topics/team_opinion.h"
 
 namespace shoal::topics {
 namespace {
@@ -55,19 +55,9 @@ void CellLabelModel::lookAgain(const TeamTopics& team, const std::function<void(
   check(team, counts_.vocabularySize());
   if (cells_.empty()) return;
   const TeamLabels labels = labelsOf(team);
-  std::vector<const TeamTopics::Foreign*> heard;
-  for (const TeamTopics::Foreign& topic : team.others)
-    if (labels.of_team.contains(topic.label)) heard.push_back(&topic);
-  std::optional<LabelCounts> others;
-  std::vector<int64_t> other_scores;
-  if (!heard.empty()) {
-    others.emplace(counts_.groups(), static_cast<int32_t>(heard.size()), hyperparameters_.beta);
-    for (size_t i = 0; i < heard.size(); ++i) others->add(heard[i]->words, static_cast<int32_t>(i));
-    other_scores.resize(static_cast<size_t>(others->stride()));
-  }
-
+  TeamOpinion others(counts_.groups(), hyperparameters_.beta, team, labels.of_team);
   LabelCandidates candidates(neighborhood_, scale_);
-  std::vector<int64_t> row(static_cast<size_t>(labels.count));
+  std::vector<int64_t> row(static_cast<size_t>(labels.count)), in_favour(row.size());
   for (const LabelledCell& cell : cells_) {
     if (candidates.numCells() % kCellsAtOnce == 0) breathe();
     std::ranges::fill(row, kLeast);
@@ -78,12 +68,8 @@ void CellLabelModel::lookAgain(const TeamTopics& team, const std::function<void(
       int64_t& best = row[static_cast<size_t>(label)];
       best = std::max(best, scores_[static_cast<size_t>(k)]);
     }
-    if (others) others->logLikelihoods(cell.words, -1, other_scores);
-    for (size_t i = 0; i < heard.size(); ++i) {
-      int64_t& best = row[static_cast<size_t>(labels.of_team.at(heard[i]->label))];
-      best = std::max(best, other_scores[i]);
-    }
-    candidates.add(row, cell.num_words);
+    others.ask(cell.words, cell.num_words, row, in_favour);
+    candidates.add(row, cell.num_words, in_favour);
   }
   const std::vector<int32_t> likeliest = likeliestLabels(candidates, kRounds, breathe);
   for (size_t c = 0; c < cells_.size(); ++c) {

@@ -28,7 +28,8 @@ class Learner {
   virtual bool canLookAgain() const { return false; }
 
   /// Judges every cell anew by what the whole team knows: a topic speaks with the words of all topics of its
-  /// label. Changes what is told of cells, and nothing of what is learnt.
+  /// label, and the others vote (team_opinion.h). Changes what is told of cells, and nothing of what is
+  /// learnt.
   /// @param breathe  Called every few thousand cells, so that who has other things to do can do them. It must
   ///                 not touch the learner, nor read what is told of its cells.
   /// @throws std::invalid_argument for words that the learner does not have; std::logic_error from a learner

@@ -14,23 +14,25 @@ constexpr int32_t kCellsAtOnce = 8192;  // between two breaths
 
 }  // namespace
 
-void LabelCandidates::add(std::span<const int64_t> log_likelihoods, int64_t num_words) {
+void LabelCandidates::add(std::span<const int64_t> log_likelihoods, int64_t num_words,
+                          std::span<const int64_t> in_favour) {
   SHOAL_DEMAND(numCells() < neighborhood_.size() && !log_likelihoods.empty());
   if (num_labels_ == 0) num_labels_ = static_cast<int32_t>(log_likelihoods.size());
-  SHOAL_DEMAND(std::ssize(log_likelihoods) == num_labels_);
+  SHOAL_DEMAND(std::ssize(log_likelihoods) == num_labels_ && in_favour.size() == log_likelihoods.size());
   weights_.clear();
-  int64_t best = std::numeric_limits<int64_t>::min(), second = best;
-  for (const int64_t log_likelihood : log_likelihoods) {
-    const int64_t weight = weightOfWords(log_likelihood, num_words, scale_);
-    weights_.push_back(weight);
-    second = std::max(second, std::min(best, weight));
-    best = std::max(best, weight);
+  int64_t heaviest = std::numeric_limits<int64_t>::min(), best = heaviest, second = heaviest;
+  for (size_t i = 0; i < log_likelihoods.size(); ++i) {
+    weights_.push_back(weightOfWords(log_likelihoods[i], num_words, scale_) + in_favour[i]);
+    heaviest = std::max(heaviest, weights_[i]);
+    second = std::max(second, std::min(best, log_likelihoods[i]));
+    best = std::max(best, log_likelihoods[i]);
   }
   const auto votes = static_cast<int64_t>(neighborhood_.of(numCells()).size());
-  const int64_t least = std::min(second, best - scale_.coupling * votes);
+  const int64_t least = heaviest - scale_.coupling * votes;
   for (int32_t k = 0; k < num_labels_; ++k) {
     const auto i = static_cast<size_t>(k);
-    if (weights_[i] >= least) candidates_.push_back({k, log_likelihoods[i], weights_[i]});
+    if (weights_[i] >= least || log_likelihoods[i] >= second)
+      candidates_.push_back({k, log_likelihoods[i], weights_[i]});
   }
   first_.push_back(candidates_.size());
 }

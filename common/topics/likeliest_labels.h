@@ -12,13 +12,14 @@
 namespace shoal::topics {
 
 /// The labels that each cell may turn out to have, by how well its words fit them: those that could be the
-/// likeliest with all votes of its neighbours, and no more, for there are few. The two best are always there.
+/// likeliest with all votes of its neighbours, and no more, for there are few. The two that the words fit
+/// best are always there.
 class LabelCandidates {
  public:
   struct Candidate {
     int32_t label = 0;
     int64_t log_likelihood = 0;  ///< log2, in units of 2^-16
-    int64_t weight = 0;          ///< of it by the conditional
+    int64_t weight = 0;          ///< of it by the conditional, and of what else speaks for the label
   };
 
   /// @param neighborhood  of the cells that will be added; outlives this.
@@ -29,7 +30,8 @@ class LabelCandidates {
   /// @param log_likelihoods  log2 for each label, in units of 2^-16: as many labels as the first cell has, >
   /// 0.
   /// @param num_words        of the cell, > 0.
-  void add(std::span<const int64_t> log_likelihoods, int64_t num_words);
+  /// @param in_favour        of each label, what else speaks for it: log2 in units of 2^-16.
+  void add(std::span<const int64_t> log_likelihoods, int64_t num_words, std::span<const int64_t> in_favour);
 
   /// Ascending by label, never empty.
   std::span<const Candidate> of(int32_t cell) const {
@@ -50,7 +52,7 @@ class LabelCandidates {
   std::vector<int64_t> weights_;
 };
 
-/// The likeliest label of every cell by the conditional of label_conditional.h: first by its words alone,
+/// The likeliest label of every cell by the conditional of label_conditional.h: first without its neighbours,
 /// then `rounds` times, cell after cell, with the votes of its neighbours as they are labelled by then; fewer
 /// when nothing changes any more (iterated conditional modes, Besag 1986). Ties go to the lowest label.
 /// @param candidates  of all cells of the neighbourhood.

@@ -17,6 +17,7 @@ struct TeamTopics {
 
   /// A topic of another robot, as it was told.
   struct Foreign {
+    world::RobotId robot{};
     int32_t label = 0;
     std::vector<world::WordCount> words;  ///< ascending by word; counts > 0 that add up to at most kMostWords
     bool operator==(const Foreign&) const = default;

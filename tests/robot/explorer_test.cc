@@ -186,7 +186,7 @@ TEST(ExplorerTest, ALookAtItsMapIsABeliefOfItsOwn) {
   topics::TeamTopics team;
   for (const mapping::BelievedTopic& topic : before.topics) team.own[topic.id] = number(topic.id);
   for (const mapping::BelievedTopic& topic : before.topics)  // each knows the words of the next
-    team.others.push_back({team.own.at(before.topics.front().id), topic.words});
+    team.others.push_back({world::RobotId{1}, team.own.at(before.topics.front().id), topic.words});
   ASSERT_TRUE(explorer.canLookAgain());
   EXPECT_FALSE(explorer.hasLookedAgain());
   explorer.lookAgain(team);

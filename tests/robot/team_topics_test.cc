@@ -54,6 +54,8 @@ TEST(TeamTopicsTest, TopicsThatAreMatchedAreOneLabel) {
   ASSERT_EQ(known.own.size(), 2u);
   ASSERT_EQ(known.others.size(), 3u);  // by robot, then topic
   EXPECT_EQ(known.others[0].words, (std::vector<world::WordCount>{{3, 7}, {12, 9}}));
+  EXPECT_EQ(known.others[0].robot, RobotId{1});
+  EXPECT_EQ(known.others[2].robot, RobotId{2});
   EXPECT_EQ(known.others[0].label, known.own.at(TopicId{1}));
   EXPECT_EQ(known.others[1].label, known.own.at(TopicId{2}));
   EXPECT_NE(known.own.at(TopicId{1}), known.own.at(TopicId{2}));

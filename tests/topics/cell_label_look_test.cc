@@ -54,7 +54,7 @@ TEST(CellLabelLookTest, OnlyWhatIsToldOfCellsChanges) {
   const Snapshot before = model.snapshot();
   TeamTopics team = alone(before);
   ASSERT_GE(before.topics.size(), 2u);
-  team.others.push_back({team.own.at(before.topics[0].id), before.topics[1].words});
+  team.others.push_back({RobotId{1}, team.own.at(before.topics[0].id), before.topics[1].words});
   model.lookAgain(team);
   const Snapshot after = model.snapshot();
   EXPECT_NE(topicsOf(after), topicsOf(before));
@@ -105,7 +105,7 @@ TEST(CellLabelLookTest, ATopicSpeaksWithTheWordsOfAllOfItsLabel) {
   team.own = {{first, 7}, {second, 8}};
   model.lookAgain(team);
   ASSERT_EQ(told().at({40, 0, 0}), second);  // its own other words decide
-  team.others = {{7, {{20, 200}, {21, 200}, {22, 200}, {23, 200}, {24, 200}}}};
+  team.others = {{RobotId{1}, 7, {{20, 200}, {21, 200}, {22, 200}, {23, 200}, {24, 200}}}};
   model.lookAgain(team);
   EXPECT_EQ(told().at({40, 0, 0}), first);
   EXPECT_EQ(told().at({0, 0, 0}), first);
@@ -146,11 +146,11 @@ TEST(CellLabelLookTest, NeitherNumbersOfLabelsNorOrderMatter) {
   TeamTopics team = alone(snapshot), renamed;
   for (const TopicCounts& topic : learnt(12, 2).snapshot().topics) {
     const TopicId like = snapshot.topics[static_cast<size_t>(number(topic.id)) % snapshot.topics.size()].id;
-    team.others.push_back({100 + number(like), topic.words});
+    team.others.push_back({RobotId{2}, 100 + number(like), topic.words});
   }
   for (const auto& [topic, label] : team.own) renamed.own[topic] = 5000 - 7 * label;
-  for (const auto& [label, words] : team.others)
-    renamed.others.insert(renamed.others.begin(), {5000 - 7 * label, words});
+  for (const auto& [robot, label, words] : team.others)
+    renamed.others.insert(renamed.others.begin(), {RobotId{9 - number(robot)}, 5000 - 7 * label, words});
   model.lookAgain(team);
   other.lookAgain(renamed);
   const Snapshot a = model.snapshot(), b = other.snapshot();
@@ -193,7 +193,7 @@ TEST(CellLabelLookTest, FindsMoreOfAPlantedMap) {
     const auto mine = majorities(few.snapshot()), theirs = majorities(all.snapshot());
     for (const auto& [topic, label] : mine) team.own[topic] = label;
     for (const TopicCounts& topic : all.snapshot().topics)
-      if (theirs.contains(topic.id)) team.others.push_back({theirs.at(topic.id), topic.words});
+      if (theirs.contains(topic.id)) team.others.push_back({RobotId{1}, theirs.at(topic.id), topic.words});
     right_before += right(mine) / kSeeds;
     few.lookAgain(team);
     right_after += right(mine) / kSeeds;
@@ -204,7 +204,7 @@ TEST(CellLabelLookTest, FindsMoreOfAPlantedMap) {
 TEST(CellLabelLookTest, RefusesWordsThatItDoesNotHave) {
   CellLabelModel model = learnt(3);
   const auto look = [&](std::vector<WordCount> words) {
-    model.lookAgain({.own = {}, .others = {{0, std::move(words)}}});
+    model.lookAgain({.own = {}, .others = {{RobotId{1}, 0, std::move(words)}}});
   };
   EXPECT_THROW(look({{100, 1}}), std::invalid_argument);
   EXPECT_THROW(look({{-1, 1}}), std::invalid_argument);
@@ -233,7 +233,7 @@ TEST(CellLabelLookTest, AModelOfWordsCannot) {
 
 TEST(CellLabelLookTest, KnowsNothingBeforeTheFirstImage) {
   CellLabelModel model(kKnobs, PlantedMap::groups(), 1, RobotId{0});
-  model.lookAgain({.own = {}, .others = {{0, {{1, 1}}}}});
+  model.lookAgain({.own = {}, .others = {{RobotId{1}, 0, {{1, 1}}}}});
   EXPECT_TRUE(model.snapshot().cells.empty());
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <vector>
 
 #include "shoal/random.h"
@@ -24,7 +25,7 @@ struct Row {
     for (const std::vector<double>& of_cell : bits) {
       std::vector<int64_t> row;
       for (const double b : of_cell) row.push_back(static_cast<int64_t>(b * kLogOne));
-      candidates.add(row, kWords);
+      candidates.add(row, kWords, std::vector<int64_t>(row.size()));
     }
   }
   std::vector<int32_t> likeliest(int rounds) const {
@@ -53,6 +54,16 @@ TEST(LikeliestLabelsTest, ARoundGoesOnWithWhatItHasJustFound) {
   EXPECT_EQ(chain.likeliest(1), (Labels{0, 0, 0}));
 }
 
+TEST(LikeliestLabelsTest, WhatElseSpeaksForALabelCountsAsBits) {
+  Neighborhood neighborhood;
+  neighborhood.insert({0, 0, 0});
+  for (const int64_t bits : {2, 4}) {  // against 3 bits of the words
+    LabelCandidates candidates(neighborhood, kScale);
+    candidates.add(std::vector<int64_t>{0, -30 * kLogOne}, kWords, std::vector<int64_t>{0, bits * kLogOne});
+    EXPECT_EQ(likeliestLabels(candidates, 1, [] {}), Labels{bits > 3 ? 1 : 0});
+  }
+}
+
 TEST(LikeliestLabelsTest, TiesGoToTheLowest) { EXPECT_EQ(Row({{0, 0, 0}}).likeliest(3), Labels{0}); }
 
 // Besag 1986: no round makes the labels less likely, and when nothing changes any more each cell has the
@@ -67,7 +78,7 @@ TEST(LikeliestLabelsTest, EveryRoundIsAtLeastAsLikelyAndTheLastIsAMode) {
     std::vector<std::vector<int64_t>> log_likelihoods(kSide * kSide);
     for (auto& row : log_likelihoods) {
       for (int32_t k = 0; k < kLabels; ++k) row.push_back(-static_cast<int64_t>(random.below(50 * kLogOne)));
-      candidates.add(row, kWords);
+      candidates.add(row, kWords, std::vector<int64_t>(row.size()));
     }
     const auto words = [&](int32_t c, int32_t k) {
       return static_cast<double>(log_likelihoods[static_cast<size_t>(c)][static_cast<size_t>(k)]) / kLogOne *
@@ -100,8 +111,9 @@ TEST(LikeliestLabelsTest, EveryRoundIsAtLeastAsLikelyAndTheLastIsAMode) {
   }
 }
 
-// All labels of all cells, by the conditional itself.
+// All labels of all cells, by the conditional and what else speaks for them.
 Labels byTheDefinition(const std::vector<std::vector<int64_t>>& log_likelihoods,
+                       const std::vector<std::vector<int64_t>>& in_favour,
                        const std::vector<int64_t>& num_words, const Neighborhood& neighborhood, int rounds) {
   Labels labels;
   for (int round = 0; round <= rounds; ++round) {
@@ -110,7 +122,14 @@ Labels byTheDefinition(const std::vector<std::vector<int64_t>>& log_likelihoods,
       if (round > 0)
         for (const int32_t n : neighborhood.of(static_cast<int32_t>(c)))
           ++votes[static_cast<size_t>(labels[static_cast<size_t>(n)])];
-      const int32_t now = likeliestLabel(log_likelihoods[c], num_words[c], votes, kScale);
+      int32_t now = 0;
+      int64_t most = std::numeric_limits<int64_t>::min();
+      for (size_t k = 0; k < votes.size(); ++k) {
+        const int64_t weight = weightOfWords(log_likelihoods[c][k], num_words[c], kScale) +
+                               kScale.coupling * votes[k] + in_favour[c][k];
+        if (weight > most) now = static_cast<int32_t>(k);
+        most = std::max(most, weight);
+      }
       if (round == 0) {
         labels.push_back(now);
       } else {
@@ -121,7 +140,8 @@ Labels byTheDefinition(const std::vector<std::vector<int64_t>>& log_likelihoods,
   return labels;
 }
 
-// Labels that no votes could help are not kept; the two best are, whose distance is the certainty.
+// Labels that no votes could help are not kept; the two that words fit best are: their distance is the
+// certainty.
 TEST(LikeliestLabelsTest, WhatIsNotKeptWouldHaveChangedNothing) {
   Random random(5);
   size_t num_kept = 0, num_labels = 0;
@@ -131,14 +151,17 @@ TEST(LikeliestLabelsTest, WhatIsNotKeptWouldHaveChangedNothing) {
     Neighborhood neighborhood;
     for (int32_t c = 0; c < kSide * kSide; ++c) neighborhood.insert({c / kSide, c % kSide, 0});
     LabelCandidates candidates(neighborhood, kScale);
-    std::vector<std::vector<int64_t>> log_likelihoods(kSide * kSide);
+    std::vector<std::vector<int64_t>> log_likelihoods(kSide * kSide), in_favour;
     std::vector<int64_t> num_words;
     for (auto& row : log_likelihoods) {
+      std::vector<int64_t>& favour = in_favour.emplace_back();
+      for (size_t k = 0; k < labels; ++k)
+        favour.push_back(trial % 2 == 0 ? 0 : static_cast<int64_t>(random.below(9)) * kLogOne);
       num_words.push_back(static_cast<int64_t>(1 + random.below(200)));
       // In steps, so that some are equal.
       for (size_t k = 0; k < labels; ++k)
         row.push_back(-static_cast<int64_t>(random.below(40)) * kLogOne * num_words.back() / 30);
-      candidates.add(row, num_words.back());
+      candidates.add(row, num_words.back(), favour);
       const auto kept = candidates.of(candidates.numCells() - 1);
       num_kept += kept.size();
       num_labels += labels;
@@ -155,7 +178,7 @@ TEST(LikeliestLabelsTest, WhatIsNotKeptWouldHaveChangedNothing) {
     }
     for (const int rounds : {0, 1, 5})
       EXPECT_EQ(likeliestLabels(candidates, rounds, [] {}),
-                byTheDefinition(log_likelihoods, num_words, neighborhood, rounds));
+                byTheDefinition(log_likelihoods, in_favour, num_words, neighborhood, rounds));
   }
   EXPECT_LT(num_kept, num_labels * 2 / 3);
 }
@@ -165,7 +188,8 @@ TEST(LikeliestLabelsTest, BreathesNowAndThen) {
   Neighborhood neighborhood;
   for (int32_t c = 0; c < kCells; ++c) neighborhood.insert({c, 0, 0});
   LabelCandidates candidates(neighborhood, kScale);
-  for (int32_t c = 0; c < kCells; ++c) candidates.add(std::vector<int64_t>{0, -kLogOne}, kWords);
+  for (int32_t c = 0; c < kCells; ++c)
+    candidates.add(std::vector<int64_t>{0, -kLogOne}, kWords, std::vector<int64_t>(2));
   int breaths = 0;
   likeliestLabels(candidates, 0, [&] { ++breaths; });
   EXPECT_EQ(breaths, 4);
