@@ -35,8 +35,7 @@ constexpr int32_t kWidth = static_cast<int32_t>(hn::MaxLanes(Floats()));
 struct Round {
   alignas(64) int32_t drawn[kLanes];    // slot of the token's new topic
   alignas(64) int32_t running[kLanes];  // -1: the lane has a token to draw, 0: it has none, or opens a topic
-  int32_t own[kLanes];                  // slot of the token's topic, -1: it has none, or there is no token
-  int32_t* row[kLanes];                 // n_kw of the token's word
+  int32_t* row[kLanes];                 // n_kw of the token's word, or of any
   int32_t order[kLanes];                // lanes that run
 };
 
@@ -71,15 +70,18 @@ HWY_INLINE void loadSlots(int32_t* const* rows, int32_t k, VI* out) {
 
 // Blocks of four rows, one beside the other: rows i, 4 + i, 8 + i and 12 + i.
 HWY_INLINE VI loadBlocks(int32_t* const* rows, int32_t k) {
-  VI v = hn::LoadDup128(kI, rows[0] + k);
 #if HWY_TARGET == HWY_AVX3
+  VI v = hn::LoadDup128(kI, rows[0] + k);
   v = hn::IfThenElse(hn::Mask<Ints>{0x00F0}, hn::LoadDup128(kI, rows[4] + k), v);
   v = hn::IfThenElse(hn::Mask<Ints>{0x0F00}, hn::LoadDup128(kI, rows[8] + k), v);
   v = hn::IfThenElse(hn::Mask<Ints>{0xF000}, hn::LoadDup128(kI, rows[12] + k), v);
-#elif HWY_TARGET == HWY_AVX2
-  v = hn::ConcatUpperLower(kI, hn::LoadDup128(kI, rows[4] + k), v);
-#endif
   return v;
+#elif HWY_TARGET == HWY_AVX2
+  const hn::Half<Ints> half;
+  return hn::Combine(kI, hn::LoadU(half, rows[4] + k), hn::LoadU(half, rows[0] + k));
+#else
+  return hn::LoadDup128(kI, rows[0] + k);
+#endif
 }
 
 // Slots k to k + 3 of each row: out[i] has slot k + i of all.
@@ -164,59 +166,85 @@ HWY_INLINE float& countOf(Lanes& lanes, int32_t slot, uint32_t lane) {
   return lanes.counts[static_cast<size_t>(slot * kLanes) + lane];
 }
 
-// Looks up the tokens `ahead` of the lanes' next ones. @returns how many lanes have one.
-int32_t lookUp(const Table& table, const Lanes& lanes, const int32_t* running, int32_t num_running,
-               int32_t ahead, Round& round) {
-  std::fill_n(round.own, kLanes, -1);
-  std::fill_n(round.running, kLanes, 0);
-  int32_t num_found = 0;
-  for (int32_t i = 0; i < num_running; ++i) {
-    const int32_t j = running[i];
-    const Token* const token = lanes.next[static_cast<size_t>(j)] + ahead;
-    if (token == lanes.end[static_cast<size_t>(j)]) continue;
-    round.own[j] = token->slot;
-    int32_t* const row = table.word_counts + int64_t{token->word} * table.stride;
-    hwy::Prefetch(row);
-    hwy::Prefetch(row + std::min(table.stride - 1, 16));
-    round.row[j] = row;
-    round.running[j] = -1;
-    round.order[num_found++] = j;
-  }
-  return num_found;
+// The row of a token's word, and the memory it is in fetched.
+HWY_INLINE int32_t* fetchedRow(const Table& table, const Token& token) {
+  int32_t* const row = table.word_counts + int64_t{token.word} * table.stride;
+  hwy::Prefetch(row);
+  hwy::Prefetch(row + std::min(table.stride - 1, 16));
+  return row;
 }
 
-// The same of the tokens after the next ones, where each lane has one.
-HWY_INLINE void lookUpLater(const Table& table, const Lanes& lanes, const Round& round, int32_t num_running,
-                            Round& later) {
+// Moves a word into the counts of a slot (by 1), or out of them (by -1). Slot -1 has none.
+HWY_INLINE void move(Lanes& lanes, const Round& round, uint32_t lane, int32_t slot, int32_t by) {
+  if (slot < 0) return;
+  round.row[lane][slot] += by;
+  countOf(lanes, slot, lane) += static_cast<float>(by);
+}
+
+// Takes the next tokens out of the counts. @returns how many of the lanes named have one: they run.
+int32_t takeOut(const Table& table, Lanes& lanes, const int32_t* named, int32_t num_named, Round& round) {
+  int32_t num_running = 0;
+  for (int32_t i = 0; i < num_named; ++i) {
+    const auto j = static_cast<uint32_t>(named[i]);
+    const bool runs = lanes.next[j] != lanes.end[j];
+    round.running[j] = runs ? -1 : 0;
+    if (!runs) continue;
+    round.order[num_running++] = named[i];
+    round.row[j] = fetchedRow(table, *lanes.next[j]);
+    move(lanes, round, j, lanes.next[j]->slot, -1);
+  }
+  return num_running;
+}
+
+void putBack(Lanes& lanes, const Round& round, int32_t from, int32_t to) {
+  for (int32_t i = from; i < to; ++i) {
+    const auto j = static_cast<uint32_t>(round.order[i]);
+    move(lanes, round, j, lanes.next[j]->slot, 1);
+  }
+}
+
+// Gives the round's first tokens, so many, the topics drawn.
+void giveTopics(Lanes& lanes, const Round& round, int32_t num_tokens) {
+  for (int32_t i = 0; i < num_tokens; ++i) {
+    const auto j = static_cast<uint32_t>(round.order[i]);
+    const int32_t drawn = round.drawn[j];
+    (lanes.next[j]++)->slot = drawn;
+    move(lanes, round, j, drawn, 1);
+  }
+}
+
+// giveTopics() and takeOut() where every lane has three tokens at least; fetches the rows of the third.
+HWY_INLINE void goOn(const Table& table, Lanes& lanes, Round& round, int32_t num_running) {
   const int64_t stride = table.stride;
   int32_t* const HWY_RESTRICT word_counts = table.word_counts;
   const int64_t second_line = std::min<int64_t>(stride - 1, 16);
   for (int32_t i = 0; i < num_running; ++i) {
     const auto j = static_cast<uint32_t>(round.order[i]);
-    const Token* const token = lanes.next[j] + 1;
-    int32_t* const row = word_counts + token->word * stride;
-    hwy::Prefetch(row);
-    hwy::Prefetch(row + second_line);
-    later.own[j] = token->slot;
-    later.row[j] = row;
+    Token* const token = lanes.next[j];
+    const int32_t drawn = round.drawn[j];
+    token[0].slot = drawn;
+    ++round.row[j][drawn];
+    countOf(lanes, drawn, j) += 1.0F;
+    int32_t* const row = word_counts + token[1].word * stride;
+    const int32_t own = token[1].slot;
+    if (own >= 0) {
+      --row[own];
+      countOf(lanes, own, j) -= 1.0F;
+    }
+    round.row[j] = row;
+    lanes.next[j] = token + 1;
+    const int32_t* const later = word_counts + token[2].word * stride;
+    hwy::Prefetch(later);
+    hwy::Prefetch(later + second_line);
   }
 }
 
-// Takes the tokens of a round out of the counts (by -1), or puts them back (by 1).
-void changeCounts(Lanes& lanes, const Round& round, int32_t num_running, int32_t by) {
-  for (int32_t i = 0; i < num_running; ++i) {
-    const auto j = static_cast<uint32_t>(round.order[i]);
-    if (round.own[j] < 0) continue;
-    round.row[j][round.own[j]] += by;
-    countOf(lanes, round.own[j], j) += static_cast<float>(by);
-  }
-}
-
-int32_t roundsUntilOneEnds(const Lanes& lanes, const Round& round, int32_t num_running) {
+// For how many rounds goOn() may be called.
+int32_t roundsAlike(const Lanes& lanes, const Round& round, int32_t num_running) {
   int64_t rounds = std::numeric_limits<int32_t>::max();
   for (int32_t i = 0; i < num_running; ++i) {
     const auto j = static_cast<size_t>(round.order[i]);
-    rounds = std::min<int64_t>(rounds, lanes.end[j] - lanes.next[j]);
+    rounds = std::min<int64_t>(rounds, lanes.end[j] - lanes.next[j] - 2);
   }
   return static_cast<int32_t>(rounds);
 }
@@ -224,59 +252,37 @@ int32_t roundsUntilOneEnds(const Lanes& lanes, const Round& round, int32_t num_r
 template <bool kMayOpen>
 Drawn drawRoundsOf(const Table& table, const float* inverse, Lanes& lanes, const int32_t* running,
                    int32_t num_running, int32_t max_rounds, int32_t max_finished) {
-  Round rounds[2];  // this one, and the next, looked up meanwhile
-  for (Round& round : rounds) std::fill_n(round.row, kLanes, table.word_counts);
+  Round round;
+  std::fill_n(round.row, kLanes, table.word_counts);
+  std::fill_n(round.running, kLanes, 0);
   const int32_t enough = std::max(num_running - max_finished, 0);
   Drawn result;
-  num_running = lookUp(table, lanes, running, num_running, 0, rounds[0]);
-  changeCounts(lanes, rounds[0], num_running, -1);
-  int32_t alike = 0;  // rounds of the same lanes
-  int32_t r = 0;
-  for (; r < max_rounds && num_running > enough; ++r) {
-    Round& round = rounds[r % 2];
-    Round& later = rounds[(r + 1) % 2];
-    int32_t num_later = num_running;
-    if (alike == 0) {
-      alike = roundsUntilOneEnds(lanes, round, num_running);
-      num_later = lookUp(table, lanes, round.order, num_running, 1, later);
-    } else if (alike == 1) {
-      num_later = lookUp(table, lanes, round.order, num_running, 1, later);
-    } else {
-      lookUpLater(table, lanes, round, num_running, later);
-    }
-    --alike;
+  num_running = takeOut(table, lanes, running, num_running, round);
+  int32_t alike = roundsAlike(lanes, round, num_running);
+  for (int32_t r = 0; r < max_rounds && num_running > enough; ++r) {
     bool opens = false;
     for (int32_t first = 0; first < kLanes; first += kWidth) {
       opens |= drawPart<kMayOpen>(table, inverse, lanes, round, first);
     }
-    for (int32_t i = 0; i < num_running; ++i) {
-      const auto j = static_cast<uint32_t>(round.order[i]);
-      int32_t* const row = round.row[j];
-      const int32_t own = round.own[j], drawn = round.drawn[j];
-      if constexpr (kMayOpen) {
-        if (opens && result.opening < 0 && round.running[j] == 0) result.opening = round.order[i];
-      }
-      if (!kMayOpen || result.opening < 0) {
-        (lanes.next[j]++)->slot = drawn;
-        ++row[drawn];
-        countOf(lanes, drawn, j) += 1.0F;
-        ++result.num_drawn;
-      } else if (own >= 0) {
-        ++row[own];
-        countOf(lanes, own, j) += 1.0F;
-      }
-      if (later.own[j] >= 0) {
-        --later.row[j][later.own[j]];
-        countOf(lanes, later.own[j], j) -= 1.0F;
-      }
+    if (opens) {
+      int32_t num_before = 0;
+      while (round.running[round.order[num_before]] != 0) ++num_before;
+      giveTopics(lanes, round, num_before);
+      putBack(lanes, round, num_before, num_running);
+      result.num_drawn += num_before;
+      result.opening = round.order[num_before];
+      return result;
     }
-    num_running = num_later;
-    if (result.opening >= 0) {
-      ++r;
-      break;
+    result.num_drawn += num_running;
+    if (alike-- > 0) {
+      goOn(table, lanes, round, num_running);
+    } else {
+      giveTopics(lanes, round, num_running);
+      num_running = takeOut(table, lanes, round.order, num_running, round);
+      alike = roundsAlike(lanes, round, num_running);
     }
   }
-  changeCounts(lanes, rounds[r % 2], num_running, 1);  // what was looked up and is not drawn
+  putBack(lanes, round, 0, num_running);
   return result;
 }
 
