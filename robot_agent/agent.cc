@@ -81,7 +81,7 @@ void Agent::run() {
   if (!stopRequested()) lookAgain();
   write();
   if (!stopRequested()) linger();
-  while (saver_.isHolding() || saver_.isSaving()) saver_.wait();
+  saver_.finish();
   if (options_.fuse) write();  // with the map as it ended
   phase_ = wire::Phase::kLeaving;
   time_.passTimeUntil(voice_.sender().heartbeatDue());  // or it would seem lost

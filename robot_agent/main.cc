@@ -112,6 +112,17 @@ void sayTroubles(const world::ObservationSource& source) {
     spdlog::warn("left out: {}", troubles);
 }
 
+/// Of a robot that has its checkpoint, so a disk that is full may do without.
+void keepEpoch(const std::string& path, int32_t epoch) {
+  const std::string text = std::to_string(epoch) + "\n";
+  try {
+    if (!std::filesystem::exists(path) || mapping::readFile(path) != text)
+      mapping::writeFileAtomically(path, text);
+  } catch (const std::runtime_error& error) {
+    spdlog::warn("{}", error.what());
+  }
+}
+
 /// The robot as it was when it last wrote a checkpoint; in a new epoch when it has lost that and knows that
 /// it had one.
 void resume(Flags& flags, world::RobotId id) {
@@ -133,7 +144,7 @@ void resume(Flags& flags, world::RobotId id) {
   }
   if (checkpoint) {
     options.explorer.epoch = checkpoint->epoch;
-    mapping::writeFileAtomically(epoch_path, std::to_string(checkpoint->epoch) + "\n");
+    keepEpoch(epoch_path, checkpoint->epoch);
     const auto now_us = std::chrono::duration_cast<std::chrono::microseconds>(
                             std::chrono::system_clock::now().time_since_epoch())
                             .count();

@@ -45,10 +45,11 @@ const std::vector<world::Observation>& images() {
 }
 
 struct Plan {
-  int32_t from = 0;     // image
-  int32_t until = -1;   // image at which the signal comes; -1: after the last
-  int signal = SIGINT;  // to the agent itself
-  bool live = false;    // then it lands and lingers
+  int32_t from = 0;                 // image
+  int32_t until = -1;               // image at which the signal comes; -1: after the last
+  int signal = SIGINT;              // to the agent itself
+  bool live = false;                // then it lands and lingers
+  std::string checkpoint_dir = {};  // not where the map goes
 };
 
 class Images final : public world::ObservationSource {
@@ -108,7 +109,7 @@ class CheckpointTest : public testing::Test {
         options.rate = 0;
         options.live = plan.live;
         options.out_dir = top_ + "/" + folder;
-        options.checkpoint_dir = top_ + "/" + folder;
+        options.checkpoint_dir = top_ + "/" + (plan.checkpoint_dir.empty() ? folder : plan.checkpoint_dir);
         options.resume = readCheckpoint(path(folder));
         if (options.resume) options.start_us = std::max<int64_t>(options.resume->mission_us, 1);
         comms::MemoryNetwork network;
@@ -161,6 +162,16 @@ TEST_F(CheckpointTest, GoingOnEqualsNeverHavingStopped) {
   expectSame(held("killed"), held("unbroken"));
   for (const std::string file : {"/robots/R00/map.csv", "/robots/R00/topics.json"})
     EXPECT_EQ(text("killed" + file), text("unbroken" + file)) << file;
+}
+
+// A file stands where the checkpoints' folder should be: as on a full disk nothing can be saved.
+TEST_F(CheckpointTest, WhatCannotBeSavedEndsNoFlight) {
+  mapping::writeFileAtomically(top_ + "/in_the_way", "");
+  ASSERT_EQ(fly("unsaved", {.checkpoint_dir = "in_the_way"}), 0);
+  ASSERT_EQ(fly("unbroken", {}), 0);
+  EXPECT_EQ(text("unsaved/robots/R00/map.csv"), text("unbroken/robots/R00/map.csv"));
+  ASSERT_EQ(fly("unsaved_live", {.until = 40, .live = true, .checkpoint_dir = "in_the_way"}), 0);
+  EXPECT_TRUE(std::filesystem::exists(top_ + "/unsaved_live/robots/R00/map.csv"));
 }
 
 TEST_F(CheckpointTest, InFlightItIsOfABetweenImagesMoment) {
