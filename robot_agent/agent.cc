@@ -10,6 +10,7 @@
 #include <spdlog/fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
+#include "fusion_node/last_heartbeat.h"
 #include "fusion_node/picture_files.h"
 #include "fusion_node/process.h"
 #include "robot_agent/later_life.h"
@@ -84,8 +85,7 @@ void Agent::run() {
   saver_.finish();
   if (options_.fuse) write();  // with the map as it ended
   phase_ = wire::Phase::kLeaving;
-  time_.passTimeUntil(voice_.sender().heartbeatDue());  // or it would seem lost
-  voice_.sender().pump(clock_.now());
+  fusion_node::sayLastHeartbeat(voice_.sender(), clock_);
   for (const auto& [reason, count] : voice_.sender().stats().rejected)
     spdlog::warn("refused {} messages: {}", count, reason);
 }

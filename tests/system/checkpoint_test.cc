@@ -20,6 +20,7 @@
 #include "shoal/comms/channels.h"
 #include "shoal/comms/memory_bus.h"
 #include "shoal/mapping/atomic_file.h"
+#include "shoal/wire/heartbeat_codec.h"
 #include "shoal/wire/message_kind.h"
 #include "shoal/wire/piece_codec.h"
 #include "shoal/world/place.h"
@@ -201,6 +202,18 @@ TEST_F(CheckpointTest, CtrlCInTheMiddleLeavesAWholeOne) {
   ASSERT_EQ(fly("unbroken", {}), 0);
   EXPECT_TRUE(held("stopped33").explorer == held("unbroken").explorer);
   EXPECT_EQ(text("stopped33/robots/R00/map.csv"), text("unbroken/robots/R00/map.csv"));
+}
+
+// A signal too ends it in good order, so that nobody thinks it lost.
+TEST_F(CheckpointTest, WhoIsStoppedSaysThatItLeaves) {
+  const auto watch = [&](const comms::Packet& packet) {
+    const auto heartbeat = wire::decodeHeartbeat(packet.bytes);
+    if (heartbeat && heartbeat->phase == wire::Phase::kLeaving)
+      mapping::writeFileAtomically(top_ + "/left", std::to_string(heartbeat->observation));
+  };
+  ASSERT_EQ(fly("stopped", {.until = 26, .signal = SIGTERM}, watch), 0);
+  ASSERT_TRUE(std::filesystem::exists(top_ + "/left"));
+  EXPECT_EQ(text("left"), "26");  // of what it had learnt from
 }
 
 // What a live source has shown is gone: no word is said that its checkpoint does not have.
