@@ -97,15 +97,18 @@ void Agent::fly() {
     saver_.save();
     saver_.wait();
   }
-  LaterLife later(options_.live, options_.start_us);
+  LaterLife later(options_.live, options_.has_mission_time ? 0 : options_.start_us);
   while (!stopRequested()) {
     time_.awaitObservation(source_);
     if (stopRequested()) break;
     auto observation = source_.next();
     if (!observation) break;
     if (!later.follows(mapper_.explorer().lastObservation(), *observation)) continue;
-    // What an earlier life had reached is caught up with at once.
-    time_.passTimeUntil((options_.resume ? 0 : options_.start_us) + observation->time.us);
+    // What a camera has seen is not to come. What an earlier life had reached is caught up with at once.
+    if (options_.live && options_.rate != 0)
+      clock_.advanceTo(observation->time.us);
+    else
+      time_.passTimeUntil((options_.resume ? 0 : options_.start_us) + observation->time.us);
     takeIn(*observation);
     time_.passTimeUntil(clock_.now());
   }

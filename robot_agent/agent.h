@@ -45,6 +45,7 @@ struct AgentOptions {
   std::string checkpoint_dir;                    ///< where checkpoints go; empty = nowhere
   std::optional<Checkpoint> resume;              ///< what to go on from, of this mission, robot and epoch
   bool live = false;                             ///< what the source has shown it will not show again
+  bool has_mission_time = false;                 ///< a live source's times count from the mission's start
   std::function<void(const ImageTimes&)> watch;  ///< told after each image, to measure; may be empty
 };
 

@@ -176,6 +176,7 @@ int run(Flags flags) {
   options.rate = fusion_node::parseRate(flags.rate);
   options.start_us = std::llround(flags.start_s * 1e6);
   options.live = isLive(flags);
+  options.has_mission_time = flags.source_start_us >= 0;
   options.team_size = flags.survey.num_robots;
   if (!flags.checkpoint.empty()) resume(flags, *id);
   options.matcher.sigma = matching::parseSigma(flags.sigma);

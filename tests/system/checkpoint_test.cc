@@ -51,6 +51,9 @@ struct Plan {
   int signal = SIGINT;              // to the agent itself
   bool live = false;                // then it lands and lingers
   std::string checkpoint_dir = {};  // not where the map goes
+  double rate = 0;
+  int64_t later_us = 0;           // than the images' own times
+  bool has_mission_time = false;  // as AgentOptions
 };
 
 class Images final : public world::ObservationSource {
@@ -59,7 +62,10 @@ class Images final : public world::ObservationSource {
   std::optional<world::Observation> next() override {
     if (next_ == plan_.until || (next_ == kImages && !plan_.live)) std::raise(plan_.signal);
     if (next_ == kImages) return std::nullopt;
-    return images()[static_cast<size_t>(next_++)];
+    world::Observation seen = images()[static_cast<size_t>(next_++)];
+    if (plan_.live) seen.number -= plan_.from;  // it counts anew
+    seen.time.us += plan_.later_us;
+    return seen;
   }
   std::optional<int32_t> numObservations() const override { return kImages; }
 
@@ -102,13 +108,15 @@ class CheckpointTest : public testing::Test {
     const pid_t child = ::fork();
     if (child == 0) {
       try {
+        ::alarm(60);  // ends who waits for what will not come
         fusion_node::setUpLog("R00", "off");
         fusion_node::catchStopSignals();
         AgentOptions options;
         options.explorer.keeps_pictures = true;
         options.mission = kMission;
-        options.rate = 0;
+        options.rate = plan.rate;
         options.live = plan.live;
+        options.has_mission_time = plan.has_mission_time;
         options.out_dir = top_ + "/" + folder;
         options.checkpoint_dir = top_ + "/" + (plan.checkpoint_dir.empty() ? folder : plan.checkpoint_dir);
         options.resume = readCheckpoint(path(folder));
@@ -240,6 +248,29 @@ TEST_F(CheckpointTest, ALiveRobotSaysOnlyWhatIsSaved) {
   const Checkpoint c = held("live");
   EXPECT_GE(c.path.size(), 5u);
   EXPECT_GT(c.said.size(), 40u);
+}
+
+// A team's mission began an hour ago by the clock of its cameras; one robot is started now, and once more.
+TEST_F(CheckpointTest, ALiveRobotGoesByTheTimesOfItsCameras) {
+  constexpr int64_t kHourUs = 3'600'000'000;
+  int64_t latest_us = 0;
+  const auto watch = [&latest_us](const comms::Packet& packet) {
+    if (const auto heartbeat = wire::decodeHeartbeat(packet.bytes)) latest_us = heartbeat->time.us;
+    if (latest_us >= 2 * kHourUs) ::_exit(4);
+  };
+  Plan plan{.until = 10, .live = true, .rate = 1, .later_us = kHourUs, .has_mission_time = true};
+  ASSERT_EQ(fly("late", plan, watch), 0);  // and did not wait for an hour
+  plan.from = 20;
+  plan.until = 30;
+  ASSERT_EQ(fly("late", plan, watch), 0);
+  const Checkpoint c = held("late");
+  ASSERT_EQ(c.path.size(), 22u);  // with each image that was taken at the signal
+  const auto timeOf = [](size_t image) { return images()[image].time.us + kHourUs; };
+  EXPECT_EQ(c.path[0].time.us, timeOf(0));
+  EXPECT_EQ(c.path[11].time.us, timeOf(20));
+  EXPECT_EQ(c.path[21].time.us, timeOf(30));
+  EXPECT_GE(c.mission_us, timeOf(30));
+  EXPECT_LT(c.mission_us, 2 * kHourUs);
 }
 
 TEST_F(CheckpointTest, WhatWasBegunByWhoWasKilledIsRemoved) {
