@@ -3,6 +3,7 @@
 
 #include <array>
 #include <bit>
+#include <charconv>
 #include <filesystem>
 #include <span>
 #include <stdexcept>
@@ -104,6 +105,20 @@ Checkpoint read(wire::ByteReader& in, const std::string& path) {
 
 std::string epochPath(const std::string& folder, world::RobotId robot) {
   return folder + "/" + world::name(robot) + ".epoch";
+}
+
+std::optional<int32_t> readEpoch(const std::string& path) {
+  constexpr int32_t kMost = 1'000'000;
+  if (!std::filesystem::exists(path)) return std::nullopt;
+  std::string text = mapping::readFile(path);
+  if (text.ends_with('\n')) text.pop_back();
+  int32_t epoch = -1;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), epoch);
+  if (error != std::errc{} || end != text.data() + text.size() || epoch < 0 || epoch >= kMost) {
+    throw std::runtime_error(path + " should hold the number of an epoch, but holds \"" + text.substr(0, 40) +
+                             "\"; write there the last in which the robot has spoken, 0 for the first");
+  }
+  return epoch;
 }
 
 std::string checkpointPath(const std::string& folder, world::RobotId robot) {

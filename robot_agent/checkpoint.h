@@ -43,6 +43,11 @@ std::string checkpointPath(const std::string& folder, world::RobotId robot);
 /// The file that says in which epoch a robot has spoken, so that one that lost its checkpoint begins another.
 std::string epochPath(const std::string& folder, world::RobotId robot);
 
+/// Nothing when there is no such file.
+/// @throws std::runtime_error naming the file and what it holds, when that is no epoch; or that cannot be
+/// read.
+std::optional<int32_t> readEpoch(const std::string& path);
+
 /// Writes it whole or not at all. One process at a time.
 /// @throws std::runtime_error naming the file that cannot be written.
 void writeCheckpoint(const std::string& path, const Checkpoint& checkpoint);

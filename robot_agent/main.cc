@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -154,10 +155,9 @@ void resume(Flags& flags, world::RobotId id) {
         std::max({options.start_us, checkpoint->mission_us + static_cast<int64_t>(std::llround(passed_us)),
                   int64_t{1}});
     options.resume = std::move(checkpoint);
-  } else if (std::filesystem::exists(epoch_path)) {
-    const int32_t before = std::stoi(mapping::readFile(epoch_path));
-    options.explorer.epoch = std::max(options.explorer.epoch, before + 1);
-    spdlog::warn("the checkpoint of epoch {} is lost: epoch {} begins", before, options.explorer.epoch);
+  } else if (const auto before = robot_agent::readEpoch(epoch_path)) {
+    options.explorer.epoch = std::max(options.explorer.epoch, *before + 1);
+    spdlog::warn("the checkpoint of epoch {} is lost: epoch {} begins", *before, options.explorer.epoch);
   }
 }
 
@@ -243,7 +243,7 @@ int main(int argc, char** argv) {
       ->envname("SHOAL_LCM_URL")
       ->capture_default_str();
   app.add_option("--budget", f.agent.budget, "bytes per second of mission time on the link, 0 = unlimited")
-      ->check(CLI::Range(int64_t{0}, int64_t{1} << 31))
+      ->check(CLI::Range(int64_t{0}, int64_t{INT32_MAX}))
       ->capture_default_str();
   app.add_option("--link", f.link,
                  "emulated on the receiving side: clean, mesh, acoustic, satellite or a file")

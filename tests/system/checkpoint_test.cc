@@ -51,6 +51,7 @@ struct Plan {
   int signal = SIGINT;              // to the agent itself
   bool live = false;                // then it lands and lingers
   std::string checkpoint_dir = {};  // not where the map goes
+  int64_t budget = 2000;
   double rate = 0;
   int64_t later_us = 0;           // than the images' own times
   bool has_mission_time = false;  // as AgentOptions
@@ -114,6 +115,7 @@ class CheckpointTest : public testing::Test {
         AgentOptions options;
         options.explorer.keeps_pictures = true;
         options.mission = kMission;
+        options.budget = plan.budget;
         options.rate = plan.rate;
         options.live = plan.live;
         options.has_mission_time = plan.has_mission_time;
@@ -271,6 +273,42 @@ TEST_F(CheckpointTest, ALiveRobotGoesByTheTimesOfItsCameras) {
   EXPECT_EQ(c.path[21].time.us, timeOf(30));
   EXPECT_GE(c.mission_us, timeOf(30));
   EXPECT_LT(c.mission_us, 2 * kHourUs);
+}
+
+TEST_F(CheckpointTest, AnEpochIsANumberAndNothingElse) {
+  const std::string file = epochPath(top_, world::RobotId{0});
+  EXPECT_FALSE(readEpoch(file).has_value());
+  for (const auto& [text, epoch] : {std::pair("0\n", 0), {"7\n", 7}, {"41", 41}}) {
+    mapping::writeFileAtomically(file, text);
+    EXPECT_EQ(readEpoch(file), epoch);
+  }
+  for (const std::string text : {"", "\n", "x", "-1\n", "3 \n", "12a\n", "99999999999\n"}) {
+    mapping::writeFileAtomically(file, text);
+    try {
+      readEpoch(file);
+      ADD_FAILURE() << text;
+    } catch (const std::runtime_error& error) {
+      const std::string said = error.what();
+      EXPECT_NE(said.find(file), std::string::npos) << said;
+      EXPECT_NE(said.find('"' + text.substr(0, text.find('\n')) + '"'), std::string::npos) << said;
+    }
+  }
+}
+
+// What was said before is not said again, but for what still waited then.
+TEST_F(CheckpointTest, WhoComesBackSaysNoPictureAgain) {
+  int pictures = 0;
+  const auto watch = [&](const comms::Packet& packet) {
+    const auto header = wire::peek(packet.bytes);
+    if (header && header->kind == wire::MessageKind::kPicture) ++pictures;
+    const auto heartbeat = wire::decodeHeartbeat(packet.bytes);
+    if (heartbeat && heartbeat->phase == wire::Phase::kLeaving)
+      mapping::writeFileAtomically(top_ + "/pictures", std::to_string(pictures));
+  };
+  ASSERT_EQ(fly("seen", {.budget = 0}, watch), 0);
+  EXPECT_GT(std::stoi(text("pictures")), 5);
+  ASSERT_EQ(fly("seen", {.budget = 0}, watch), 0);
+  EXPECT_EQ(text("pictures"), "0");
 }
 
 TEST_F(CheckpointTest, WhatWasBegunByWhoWasKilledIsRemoved) {
