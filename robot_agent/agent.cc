@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <stdexcept>
 #include <vector>
 
 #include <spdlog/fmt/ranges.h>
@@ -238,6 +239,12 @@ void Agent::write() {
 
 // As if there had been no crash: what was learnt, what was said, what was still to be said.
 void Agent::resume(const Checkpoint& checkpoint) {
+  if (checkpoint.detail != options_.explorer.detail) {  // a version would have two contents
+    throw std::invalid_argument(fmt::format(
+        "--detail {}: the checkpoint of {} tells in detail {}; go on in that, or name another folder",
+        mapping::toText(options_.explorer.detail), name(options_.explorer.robot),
+        mapping::toText(checkpoint.detail)));
+  }
   mapper_.restore(checkpoint);
   voice_.restore(checkpoint);
   publisher_.restore(checkpoint);
@@ -251,6 +258,7 @@ Checkpoint Agent::snapshot() {
                         .epoch = options_.explorer.epoch,
                         .mission_us = clock_.now(),
                         .wall_us = wallUs(),
+                        .detail = options_.explorer.detail,
                         .explorer = {},
                         .said = {},
                         .untold = {},

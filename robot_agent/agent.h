@@ -59,6 +59,7 @@ struct AgentOptions {
 class Agent {
  public:
   /// `source` and `bus` outlive the agent.
+  /// @throws std::invalid_argument when it was to go on in another detail than before.
   Agent(const AgentOptions& options, world::ObservationSource& source, comms::Bus& bus);
 
   /// Flies the source to its end, then keeps telling until a fusion node holds all it had to say (or, with

@@ -20,7 +20,8 @@
 namespace shoal::robot_agent {
 namespace {
 
-constexpr std::string_view kMagic = "SHOALRC4";  // the last letter is the version
+constexpr std::string_view kMagic = "SHOALRC5";  // the last letter is the version
+constexpr int64_t kMostTrailer = 64;             // of a datagram
 constexpr size_t kTrailer = 16;                  // checksum, and how long the explorer's part is
 
 // Of several runs of bytes, each of so many.
@@ -64,6 +65,10 @@ Checkpoint read(wire::ByteReader& in, const std::string& path) {
   c.epoch = static_cast<int32_t>(number64(in));
   c.mission_us = number64(in);
   c.wall_us = number64(in);
+  c.detail = in.bigEndian(1) == 0 ? mapping::Detail::kFine : mapping::Detail::kCoarse;
+  c.cut = {number64(in), number64(in)};
+  if (c.cut.budget < 0 || c.cut.trailer < 0 || c.cut.trailer > kMostTrailer)
+    throw damaged("pieces cannot be cut so");
   for (uint64_t n = in.varint(); n > 0 && !in.failed(); --n) {
     const bool waits = in.bigEndian(1) != 0;
     const auto message = in.take(in.varint());
@@ -130,6 +135,9 @@ void writeCheckpoint(const std::string& path, const Checkpoint& c) {
   for (const int64_t value :
        {int64_t{c.mission}, int64_t{number(c.robot)}, int64_t{c.epoch}, c.mission_us, c.wall_us})
     putNumber(out, value);
+  out.push_back(c.detail == mapping::Detail::kFine ? 0 : 1);
+  putNumber(out, c.cut.budget);
+  putNumber(out, c.cut.trailer);
   wire::putVarint(out, c.said.size());
   for (const Checkpoint::Said& said : c.said) {
     out.push_back(said.waits ? 1 : 0);

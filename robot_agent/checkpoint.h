@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "shoal/mapping/belief_pieces.h"
+#include "shoal/mapping/local_belief.h"
 #include "shoal/mapping/piece.h"
 #include "shoal/mapping/poses_file.h"
 #include "shoal/wire/bytes.h"
@@ -22,8 +23,14 @@ struct Checkpoint {
   int32_t mission = 0;
   world::RobotId robot{};
   int32_t epoch = 0;
-  int64_t mission_us = 0;         ///< its clock ...
-  int64_t wall_us = 0;            ///< ... at this time since 1970
+  int64_t mission_us = 0;    ///< its clock ...
+  int64_t wall_us = 0;       ///< ... at this time since 1970
+  mapping::Detail detail{};  ///< of what was told
+  struct Cut {
+    int64_t budget = 0;   ///< bytes per second of mission time, 0 = unlimited
+    int64_t trailer = 0;  ///< bytes that the bus adds to a datagram
+  };
+  Cut cut = {};                   ///< what pieces were cut into parts for
   std::vector<uint8_t> explorer;  ///< robot::Explorer::checkpoint()
   struct Said {
     mapping::Piece piece;

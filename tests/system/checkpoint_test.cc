@@ -311,6 +311,27 @@ TEST_F(CheckpointTest, WhoComesBackSaysNoPictureAgain) {
   EXPECT_EQ(text("pictures"), "0");
 }
 
+TEST_F(CheckpointTest, AnotherDetailIsRefusedByName) {
+  ASSERT_EQ(fly("fine", {.until = 7}), 0);
+  AgentOptions options;
+  options.mission = kMission;
+  options.explorer.keeps_pictures = true;
+  options.explorer.detail = mapping::Detail::kCoarse;
+  options.resume = held("fine");
+  options.start_us = 1;
+  comms::MemoryNetwork network;
+  const auto bus = network.connect();
+  Images source({});
+  try {
+    Agent(options, source, *bus);
+    ADD_FAILURE();
+  } catch (const std::invalid_argument& error) {
+    const std::string said = error.what();
+    EXPECT_NE(said.find("--detail coarse"), std::string::npos) << said;
+    EXPECT_NE(said.find("detail fine"), std::string::npos) << said;
+  }
+}
+
 TEST_F(CheckpointTest, WhatWasBegunByWhoWasKilledIsRemoved) {
   const std::string file = path("folder");
   mapping::writeFileAtomically(file, "whole");

@@ -177,6 +177,22 @@ TEST_F(TellingTest, WhatIsForgottenIsNotSaidWhenItIsSaved) {
   EXPECT_FALSE(isSaid(topic(1, 10)));
 }
 
+// A version that is said again must be the same bytes, in the same parts.
+TEST_F(TellingTest, AfterACrashPiecesAreCutAsBefore) {
+  const auto saves = saver(folder_);
+  saves->save();
+  saves->wait();
+  for (const int64_t budget : {0, 20'000}) {
+    Voice later({.robot = kRobot, .mission = kMission, .budget = budget}, *bus_, state_);
+    ASSERT_NE(later.mostBytes(topic(1, 10)), voice_.mostBytes(topic(1, 10)));
+    later.restore(saved());
+    EXPECT_EQ(later.mostBytes(topic(1, 10)), voice_.mostBytes(topic(1, 10)));
+    Checkpoint again;
+    later.saveTo(again);
+    EXPECT_EQ(again.cut.budget, 100);
+  }
+}
+
 TEST_F(TellingTest, AfterACrashWhatWaitedIsSaidAgain) {
   Checkpoint checkpoint;
   checkpoint.said.push_back({topic(1, 10), true, {}});
