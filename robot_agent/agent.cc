@@ -36,12 +36,6 @@ double wallSeconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-int64_t wallUs() {
-  return std::chrono::duration_cast<std::chrono::microseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
-
 }  // namespace
 
 Agent::Agent(const AgentOptions& options, world::ObservationSource& source, comms::Bus& bus)
@@ -257,7 +251,7 @@ Checkpoint Agent::snapshot() {
                         .robot = options_.explorer.robot,
                         .epoch = options_.explorer.epoch,
                         .mission_us = clock_.now(),
-                        .wall_us = wallUs(),
+                        .saved = fusion_node::thisMoment(),
                         .detail = options_.explorer.detail,
                         .explorer = {},
                         .said = {},

@@ -20,7 +20,7 @@
 namespace shoal::robot_agent {
 namespace {
 
-constexpr std::string_view kMagic = "SHOALRC5";  // the last letter is the version
+constexpr std::string_view kMagic = "SHOALRC6";  // the last letter is the version
 constexpr int64_t kMostTrailer = 64;             // of a datagram
 constexpr size_t kTrailer = 16;                  // checksum, and how long the explorer's part is
 
@@ -64,7 +64,9 @@ Checkpoint read(wire::ByteReader& in, const std::string& path) {
   c.robot = world::RobotId{static_cast<int32_t>(number64(in))};
   c.epoch = static_cast<int32_t>(number64(in));
   c.mission_us = number64(in);
-  c.wall_us = number64(in);
+  c.saved.wall_us = number64(in);
+  c.saved.boot_us = number64(in);
+  c.saved.boot_id = textOf(in.take(in.varint()));
   c.detail = in.bigEndian(1) == 0 ? mapping::Detail::kFine : mapping::Detail::kCoarse;
   c.cut = {number64(in), number64(in)};
   if (c.cut.budget < 0 || c.cut.trailer < 0 || c.cut.trailer > kMostTrailer)
@@ -132,9 +134,10 @@ std::string checkpointPath(const std::string& folder, world::RobotId robot) {
 
 void writeCheckpoint(const std::string& path, const Checkpoint& c) {
   wire::Bytes out(kMagic.begin(), kMagic.end());
-  for (const int64_t value :
-       {int64_t{c.mission}, int64_t{number(c.robot)}, int64_t{c.epoch}, c.mission_us, c.wall_us})
+  for (const int64_t value : {int64_t{c.mission}, int64_t{number(c.robot)}, int64_t{c.epoch}, c.mission_us,
+                              c.saved.wall_us, c.saved.boot_us})
     putNumber(out, value);
+  putBlob(out, std::span(reinterpret_cast<const uint8_t*>(c.saved.boot_id.data()), c.saved.boot_id.size()));
   out.push_back(c.detail == mapping::Detail::kFine ? 0 : 1);
   putNumber(out, c.cut.budget);
   putNumber(out, c.cut.trailer);

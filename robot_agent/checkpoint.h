@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "fusion_node/moment.h"
 #include "shoal/mapping/belief_pieces.h"
 #include "shoal/mapping/local_belief.h"
 #include "shoal/mapping/piece.h"
@@ -23,9 +24,9 @@ struct Checkpoint {
   int32_t mission = 0;
   world::RobotId robot{};
   int32_t epoch = 0;
-  int64_t mission_us = 0;    ///< its clock ...
-  int64_t wall_us = 0;       ///< ... at this time since 1970
-  mapping::Detail detail{};  ///< of what was told
+  int64_t mission_us = 0;     ///< its clock ...
+  fusion_node::Moment saved;  ///< ... at this moment
+  mapping::Detail detail{};   ///< of what was told
   struct Cut {
     int64_t budget = 0;   ///< bytes per second of mission time, 0 = unlimited
     int64_t trailer = 0;  ///< bytes that the bus adds to a datagram

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -18,6 +17,7 @@
 
 #include "fusion_node/authentication.h"
 #include "fusion_node/link.h"
+#include "fusion_node/moment.h"
 #include "fusion_node/process.h"
 #include "robot_agent/agent.h"
 #include "robot_agent/camera_stream.h"
@@ -146,11 +146,9 @@ void resume(Flags& flags, world::RobotId id) {
   if (checkpoint) {
     options.explorer.epoch = checkpoint->epoch;
     keepEpoch(epoch_path, checkpoint->epoch);
-    const auto now_us = std::chrono::duration_cast<std::chrono::microseconds>(
-                            std::chrono::system_clock::now().time_since_epoch())
-                            .count();
-    const double passed_us =
-        options.rate * static_cast<double>(std::max<int64_t>(now_us - checkpoint->wall_us, 0));
+    const fusion_node::Gap gap = fusion_node::passedBetween(checkpoint->saved, fusion_node::thisMoment());
+    if (!gap.doubt.empty()) spdlog::warn("{}: {}; goes on from the time in it", path, gap.doubt);
+    const double passed_us = options.rate * static_cast<double>(gap.us);
     options.start_us =
         std::max({options.start_us, checkpoint->mission_us + static_cast<int64_t>(std::llround(passed_us)),
                   int64_t{1}});

@@ -193,6 +193,15 @@ TEST_F(TellingTest, AfterACrashPiecesAreCutAsBefore) {
   }
 }
 
+TEST_F(TellingTest, ACheckpointSaysWhenItWasSavedByBothClocks) {
+  Checkpoint written;
+  written.saved = {.wall_us = 12, .boot_us = 7, .boot_id = "0c4a-one"};
+  writeCheckpoint(checkpointPath(folder_, kRobot), written);
+  EXPECT_EQ(saved().saved.wall_us, 12);
+  EXPECT_EQ(saved().saved.boot_us, 7);
+  EXPECT_EQ(saved().saved.boot_id, "0c4a-one");
+}
+
 TEST_F(TellingTest, AfterACrashWhatWaitedIsSaidAgain) {
   Checkpoint checkpoint;
   checkpoint.said.push_back({topic(1, 10), true, {}});
