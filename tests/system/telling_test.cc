@@ -202,6 +202,23 @@ TEST_F(TellingTest, ACheckpointSaysWhenItWasSavedByBothClocks) {
   EXPECT_EQ(saved().saved.boot_id, "0c4a-one");
 }
 
+TEST_F(TellingTest, AfterACrashNoPictureIsSaidAgain) {
+  Piece picture{.key = {kRobot, mapping::PieceKind::kPicture, {0, 0, 0}},
+                .version = {0, 5},
+                .content = mapping::PicturePart{}};
+  Checkpoint checkpoint;
+  checkpoint.said.push_back({picture, false, {}});
+  voice_.restore(checkpoint);
+  const auto saves = saver("");
+  Publisher publisher(kMission, *saves, voice_);
+  publisher.restore(checkpoint);
+  publisher.publishPictures({picture}, true);  // a robot that comes back finds all of them new
+  EXPECT_FALSE(voice_.isWaiting(picture));
+  picture.version.observation = 6;
+  publisher.publishPictures({picture}, true);
+  EXPECT_TRUE(voice_.isWaiting(picture));
+}
+
 TEST_F(TellingTest, AfterACrashWhatWaitedIsSaidAgain) {
   Checkpoint checkpoint;
   checkpoint.said.push_back({topic(1, 10), true, {}});
