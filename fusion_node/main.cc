@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <memory>
@@ -76,7 +77,7 @@ int main(int argc, char** argv) {
       ->envname("SHOAL_LCM_URL")
       ->capture_default_str();
   app.add_option("--budget", options.budget, "bytes per second of mission time on the link, 0 = unlimited")
-      ->check(CLI::NonNegativeNumber)
+      ->check(CLI::Range(int64_t{0}, int64_t{INT32_MAX}))
       ->capture_default_str();
   app.add_option("--key", link.key, "file with the team's key: only who has it is listened to");
   app.add_option("--link", link.model,

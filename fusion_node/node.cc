@@ -11,6 +11,7 @@
 #include <spdlog/spdlog.h>
 
 #include "fusion_node/authentication.h"
+#include "fusion_node/moment.h"
 #include "fusion_node/picture_files.h"
 #include "fusion_node/picture_question.h"
 #include "fusion_node/process.h"
@@ -163,10 +164,12 @@ void Node::recall() {
   memory_.emplace(options_.state_dir, options_.name, options_.mission);
   const auto clock = memory_->recall(state_);
   if (!clock) return;
-  const auto now_us = std::chrono::duration_cast<std::chrono::microseconds>(
-                          std::chrono::system_clock::now().time_since_epoch())
-                          .count();
-  const auto passed_us = options_.rate * static_cast<double>(std::max<int64_t>(now_us - clock->second, 0));
+  const Gap gap = passedBetween({.wall_us = clock->second, .boot_us = 0, .boot_id = {}}, thisMoment());
+  if (!gap.doubt.empty()) {
+    spdlog::warn("what {} remembers of its clock: {}; goes on from there",
+                 missionFilePath(options_.state_dir, options_.mission), gap.doubt);
+  }
+  const double passed_us = options_.rate * static_cast<double>(gap.us);
   clock_.advanceTo(clock->first + std::llround(passed_us));
   spdlog::info("comes back with {} pieces of {} robots, at {:.1f} s", state_.beliefs().numPieces(),
                state_.beliefs().robots().size(), static_cast<double>(clock_.now()) * 1e-6);

@@ -106,6 +106,11 @@ const wire::Heartbeat* StateHoldings::lately(const std::string& node) const {
   return now_us_ - heard->second <= std::max(kLatelyUs, stretched_us) ? &said : nullptr;
 }
 
+bool StateHoldings::hears(const std::string& node, int64_t now_us) {
+  now_us_ = std::max(now_us_, now_us);
+  return lately(node) != nullptr;
+}
+
 bool StateHoldings::isHeldByFusingNode(world::RobotId robot, uint32_t digest) const {
   return std::ranges::any_of(heard_us_, [&](const auto& heard) {
     const wire::Heartbeat* node = lately(heard.first);

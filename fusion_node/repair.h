@@ -41,6 +41,9 @@ class StateHoldings final : public comms::Holdings {
   /// A heartbeat was heard; returns the shares of which its sender holds something else.
   std::vector<int32_t> heardFrom(const std::string& node, int64_t now_us);
 
+  /// True when a node other than this one was heard within the time that its heartbeats may take.
+  bool hears(const std::string& node, int64_t now_us);
+
   /// What is held of other robots and what no fusing node that is heard has had for a while: somebody may
   /// carry it further.
   std::vector<wire::Heartbeat::Share> unmet(int64_t now_us);
@@ -97,6 +100,9 @@ class Repair {
 
   /// Asks for a piece, in this version or a newer one, until it is heard or a few askings have been in vain.
   void ask(const mapping::PieceKey& key, int32_t part, const world::Version& version);
+
+  /// True when `node` was heard lately: for a minute it may be silent, for longer under a thin budget.
+  bool hears(const std::string& node, int64_t now_us) { return holdings_.hears(node, now_us); }
 
   /// For a heartbeat: what a node that fuses holds of every robot; of others StateHoldings::unmet().
   std::vector<wire::Heartbeat::Share> roster(int64_t now_us);

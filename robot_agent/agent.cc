@@ -5,11 +5,13 @@
 
 #include <chrono>
 #include <cmath>
+#include <stdexcept>
 #include <vector>
 
 #include <spdlog/fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
+#include "fusion_node/last_heartbeat.h"
 #include "fusion_node/picture_files.h"
 #include "fusion_node/process.h"
 #include "robot_agent/later_life.h"
@@ -32,12 +34,6 @@ constexpr size_t kSaveEvery = 5 * Mapper::kTurns;
 
 double wallSeconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-int64_t wallUs() {
-  return std::chrono::duration_cast<std::chrono::microseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
 }
 
 }  // namespace
@@ -81,11 +77,10 @@ void Agent::run() {
   if (!stopRequested()) lookAgain();
   write();
   if (!stopRequested()) linger();
-  while (saver_.isHolding() || saver_.isSaving()) saver_.wait();
+  saver_.finish();
   if (options_.fuse) write();  // with the map as it ended
   phase_ = wire::Phase::kLeaving;
-  time_.passTimeUntil(voice_.sender().heartbeatDue());  // or it would seem lost
-  voice_.sender().pump(clock_.now());
+  fusion_node::sayLastHeartbeat(voice_.sender(), clock_);
   for (const auto& [reason, count] : voice_.sender().stats().rejected)
     spdlog::warn("refused {} messages: {}", count, reason);
 }
@@ -97,15 +92,18 @@ void Agent::fly() {
     saver_.save();
     saver_.wait();
   }
-  LaterLife later(options_.live, options_.start_us);
+  LaterLife later(options_.live, options_.has_mission_time ? 0 : options_.start_us);
   while (!stopRequested()) {
     time_.awaitObservation(source_);
     if (stopRequested()) break;
     auto observation = source_.next();
     if (!observation) break;
     if (!later.follows(mapper_.explorer().lastObservation(), *observation)) continue;
-    // What an earlier life had reached is caught up with at once.
-    time_.passTimeUntil((options_.resume ? 0 : options_.start_us) + observation->time.us);
+    // What a camera has seen is not to come. What an earlier life had reached is caught up with at once.
+    if (options_.live && options_.rate != 0)
+      clock_.advanceTo(observation->time.us);
+    else
+      time_.passTimeUntil((options_.resume ? 0 : options_.start_us) + observation->time.us);
     takeIn(*observation);
     time_.passTimeUntil(clock_.now());
   }
@@ -235,6 +233,12 @@ void Agent::write() {
 
 // As if there had been no crash: what was learnt, what was said, what was still to be said.
 void Agent::resume(const Checkpoint& checkpoint) {
+  if (checkpoint.detail != options_.explorer.detail) {  // a version would have two contents
+    throw std::invalid_argument(fmt::format(
+        "--detail {}: the checkpoint of {} tells in detail {}; go on in that, or name another folder",
+        mapping::toText(options_.explorer.detail), name(options_.explorer.robot),
+        mapping::toText(checkpoint.detail)));
+  }
   mapper_.restore(checkpoint);
   voice_.restore(checkpoint);
   publisher_.restore(checkpoint);
@@ -247,7 +251,8 @@ Checkpoint Agent::snapshot() {
                         .robot = options_.explorer.robot,
                         .epoch = options_.explorer.epoch,
                         .mission_us = clock_.now(),
-                        .wall_us = wallUs(),
+                        .saved = fusion_node::thisMoment(),
+                        .detail = options_.explorer.detail,
                         .explorer = {},
                         .said = {},
                         .untold = {},

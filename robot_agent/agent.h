@@ -45,6 +45,7 @@ struct AgentOptions {
   std::string checkpoint_dir;                    ///< where checkpoints go; empty = nowhere
   std::optional<Checkpoint> resume;              ///< what to go on from, of this mission, robot and epoch
   bool live = false;                             ///< what the source has shown it will not show again
+  bool has_mission_time = false;                 ///< a live source's times count from the mission's start
   std::function<void(const ImageTimes&)> watch;  ///< told after each image, to measure; may be empty
 };
 
@@ -58,6 +59,7 @@ struct AgentOptions {
 class Agent {
  public:
   /// `source` and `bus` outlive the agent.
+  /// @throws std::invalid_argument when it was to go on in another detail than before.
   Agent(const AgentOptions& options, world::ObservationSource& source, comms::Bus& bus);
 
   /// Flies the source to its end, then keeps telling until a fusion node holds all it had to say (or, with

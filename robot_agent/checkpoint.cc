@@ -3,6 +3,7 @@
 
 #include <array>
 #include <bit>
+#include <charconv>
 #include <filesystem>
 #include <span>
 #include <stdexcept>
@@ -19,7 +20,8 @@
 namespace shoal::robot_agent {
 namespace {
 
-constexpr std::string_view kMagic = "SHOALRC4";  // the last letter is the version
+constexpr std::string_view kMagic = "SHOALRC6";  // the last letter is the version
+constexpr int64_t kMostTrailer = 64;             // of a datagram
 constexpr size_t kTrailer = 16;                  // checksum, and how long the explorer's part is
 
 // Of several runs of bytes, each of so many.
@@ -62,7 +64,13 @@ Checkpoint read(wire::ByteReader& in, const std::string& path) {
   c.robot = world::RobotId{static_cast<int32_t>(number64(in))};
   c.epoch = static_cast<int32_t>(number64(in));
   c.mission_us = number64(in);
-  c.wall_us = number64(in);
+  c.saved.wall_us = number64(in);
+  c.saved.boot_us = number64(in);
+  c.saved.boot_id = textOf(in.take(in.varint()));
+  c.detail = in.bigEndian(1) == 0 ? mapping::Detail::kFine : mapping::Detail::kCoarse;
+  c.cut = {number64(in), number64(in)};
+  if (c.cut.budget < 0 || c.cut.trailer < 0 || c.cut.trailer > kMostTrailer)
+    throw damaged("pieces cannot be cut so");
   for (uint64_t n = in.varint(); n > 0 && !in.failed(); --n) {
     const bool waits = in.bigEndian(1) != 0;
     const auto message = in.take(in.varint());
@@ -106,15 +114,33 @@ std::string epochPath(const std::string& folder, world::RobotId robot) {
   return folder + "/" + world::name(robot) + ".epoch";
 }
 
+std::optional<int32_t> readEpoch(const std::string& path) {
+  constexpr int32_t kMost = 1'000'000;
+  if (!std::filesystem::exists(path)) return std::nullopt;
+  std::string text = mapping::readFile(path);
+  if (text.ends_with('\n')) text.pop_back();
+  int32_t epoch = -1;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), epoch);
+  if (error != std::errc{} || end != text.data() + text.size() || epoch < 0 || epoch >= kMost) {
+    throw std::runtime_error(path + " should hold the number of an epoch, but holds \"" + text.substr(0, 40) +
+                             "\"; write there the last in which the robot has spoken, 0 for the first");
+  }
+  return epoch;
+}
+
 std::string checkpointPath(const std::string& folder, world::RobotId robot) {
   return folder + "/" + world::name(robot) + ".checkpoint";
 }
 
 void writeCheckpoint(const std::string& path, const Checkpoint& c) {
   wire::Bytes out(kMagic.begin(), kMagic.end());
-  for (const int64_t value :
-       {int64_t{c.mission}, int64_t{number(c.robot)}, int64_t{c.epoch}, c.mission_us, c.wall_us})
+  for (const int64_t value : {int64_t{c.mission}, int64_t{number(c.robot)}, int64_t{c.epoch}, c.mission_us,
+                              c.saved.wall_us, c.saved.boot_us})
     putNumber(out, value);
+  putBlob(out, std::span(reinterpret_cast<const uint8_t*>(c.saved.boot_id.data()), c.saved.boot_id.size()));
+  out.push_back(c.detail == mapping::Detail::kFine ? 0 : 1);
+  putNumber(out, c.cut.budget);
+  putNumber(out, c.cut.trailer);
   wire::putVarint(out, c.said.size());
   for (const Checkpoint::Said& said : c.said) {
     out.push_back(said.waits ? 1 : 0);

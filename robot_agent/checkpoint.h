@@ -7,7 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "fusion_node/moment.h"
 #include "shoal/mapping/belief_pieces.h"
+#include "shoal/mapping/local_belief.h"
 #include "shoal/mapping/piece.h"
 #include "shoal/mapping/poses_file.h"
 #include "shoal/wire/bytes.h"
@@ -22,8 +24,14 @@ struct Checkpoint {
   int32_t mission = 0;
   world::RobotId robot{};
   int32_t epoch = 0;
-  int64_t mission_us = 0;         ///< its clock ...
-  int64_t wall_us = 0;            ///< ... at this time since 1970
+  int64_t mission_us = 0;     ///< its clock ...
+  fusion_node::Moment saved;  ///< ... at this moment
+  mapping::Detail detail{};   ///< of what was told
+  struct Cut {
+    int64_t budget = 0;   ///< bytes per second of mission time, 0 = unlimited
+    int64_t trailer = 0;  ///< bytes that the bus adds to a datagram
+  };
+  Cut cut = {};                   ///< what pieces were cut into parts for
   std::vector<uint8_t> explorer;  ///< robot::Explorer::checkpoint()
   struct Said {
     mapping::Piece piece;
@@ -42,6 +50,11 @@ std::string checkpointPath(const std::string& folder, world::RobotId robot);
 
 /// The file that says in which epoch a robot has spoken, so that one that lost its checkpoint begins another.
 std::string epochPath(const std::string& folder, world::RobotId robot);
+
+/// Nothing when there is no such file.
+/// @throws std::runtime_error naming the file and what it holds, when that is no epoch; or that cannot be
+/// read.
+std::optional<int32_t> readEpoch(const std::string& path);
 
 /// Writes it whole or not at all. One process at a time.
 /// @throws std::runtime_error naming the file that cannot be written.

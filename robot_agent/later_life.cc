@@ -11,7 +11,7 @@ bool LaterLife::follows(int32_t last, world::Observation& observation) {
     skipped_ = last + 1 - observation.number;
     observation.number = last + 1;
   }
-  if (skipped_ > 0) observation.time.us += start_us_;
+  if (skipped_ > 0) observation.time.us += begins_at_us_;
   return true;
 }
 

@@ -56,19 +56,24 @@ void Listener::warn() {
   }
 }
 
-bool Listener::isHeard() const {
-  bool heard = false;
+bool Listener::isHeard() {
+  bool is_held = false, has_left = false, is_silent = false;
   for (const auto& [node, heartbeat] : state_.heartbeats()) {
     const bool fuses = heartbeat.phase == wire::Phase::kNode || heartbeat.map_of_state != 0;
     if (node == name_ || !fuses || heartbeat.roster.empty()) continue;
     const auto mine = std::ranges::find(heartbeat.roster, options_.robot, &wire::Heartbeat::Share::robot);
-    if (mine == heartbeat.roster.end() ||
-        mine->digest != wire::shareDigest(voice_.said().digestOf(options_.robot))) {
+    if (mine != heartbeat.roster.end() &&
+        mine->digest == wire::shareDigest(voice_.said().digestOf(options_.robot))) {
+      is_held = true;
+    } else if (heartbeat.phase == wire::Phase::kLeaving) {
+      has_left = true;
+    } else if (!repair_.hears(node, clock_.now())) {
+      is_silent = true;
+    } else {
       return false;
     }
-    heard = true;
   }
-  return heard;
+  return is_held || (options_.fuses && has_left && !is_silent);
 }
 
 void Listener::report(wire::Heartbeat& h, int64_t now_us) {

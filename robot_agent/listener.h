@@ -45,8 +45,11 @@ class Listener {
   /// While it is wanted, asks for all that it lacks, as a node that fuses does.
   void wantAll(bool wanted) { repair_.wantAll(wanted); }
 
-  /// True when all nodes that fuse hold all that this robot has said, and there is one.
-  bool isHeard() const;
+  /// True when all nodes that fuse hold all that this robot has said, and there is one. Nodes that said that
+  /// they leave, or that were not heard for long, are not waited for, but for what they had held by then. A
+  /// robot that fuses too is done when all others that did have said that they leave: nobody is left to be
+  /// told.
+  bool isHeard();
 
   /// Fills in what the heartbeat says of this.
   void report(wire::Heartbeat& heartbeat, int64_t now_us);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -17,6 +17,7 @@
 
 #include "fusion_node/authentication.h"
 #include "fusion_node/link.h"
+#include "fusion_node/moment.h"
 #include "fusion_node/process.h"
 #include "robot_agent/agent.h"
 #include "robot_agent/camera_stream.h"
@@ -112,6 +113,17 @@ void sayTroubles(const world::ObservationSource& source) {
     spdlog::warn("left out: {}", troubles);
 }
 
+/// Of a robot that has its checkpoint, so a disk that is full may do without.
+void keepEpoch(const std::string& path, int32_t epoch) {
+  const std::string text = std::to_string(epoch) + "\n";
+  try {
+    if (!std::filesystem::exists(path) || mapping::readFile(path) != text)
+      mapping::writeFileAtomically(path, text);
+  } catch (const std::runtime_error& error) {
+    spdlog::warn("{}", error.what());
+  }
+}
+
 /// The robot as it was when it last wrote a checkpoint; in a new epoch when it has lost that and knows that
 /// it had one.
 void resume(Flags& flags, world::RobotId id) {
@@ -133,20 +145,17 @@ void resume(Flags& flags, world::RobotId id) {
   }
   if (checkpoint) {
     options.explorer.epoch = checkpoint->epoch;
-    mapping::writeFileAtomically(epoch_path, std::to_string(checkpoint->epoch) + "\n");
-    const auto now_us = std::chrono::duration_cast<std::chrono::microseconds>(
-                            std::chrono::system_clock::now().time_since_epoch())
-                            .count();
-    const double passed_us =
-        options.rate * static_cast<double>(std::max<int64_t>(now_us - checkpoint->wall_us, 0));
+    keepEpoch(epoch_path, checkpoint->epoch);
+    const fusion_node::Gap gap = fusion_node::passedBetween(checkpoint->saved, fusion_node::thisMoment());
+    if (!gap.doubt.empty()) spdlog::warn("{}: {}; goes on from the time in it", path, gap.doubt);
+    const double passed_us = options.rate * static_cast<double>(gap.us);
     options.start_us =
         std::max({options.start_us, checkpoint->mission_us + static_cast<int64_t>(std::llround(passed_us)),
                   int64_t{1}});
     options.resume = std::move(checkpoint);
-  } else if (std::filesystem::exists(epoch_path)) {
-    const int32_t before = std::stoi(mapping::readFile(epoch_path));
-    options.explorer.epoch = std::max(options.explorer.epoch, before + 1);
-    spdlog::warn("the checkpoint of epoch {} is lost: epoch {} begins", before, options.explorer.epoch);
+  } else if (const auto before = robot_agent::readEpoch(epoch_path)) {
+    options.explorer.epoch = std::max(options.explorer.epoch, *before + 1);
+    spdlog::warn("the checkpoint of epoch {} is lost: epoch {} begins", *before, options.explorer.epoch);
   }
 }
 
@@ -165,6 +174,7 @@ int run(Flags flags) {
   options.rate = fusion_node::parseRate(flags.rate);
   options.start_us = std::llround(flags.start_s * 1e6);
   options.live = isLive(flags);
+  options.has_mission_time = flags.source_start_us >= 0;
   options.team_size = flags.survey.num_robots;
   if (!flags.checkpoint.empty()) resume(flags, *id);
   options.matcher.sigma = matching::parseSigma(flags.sigma);
@@ -231,7 +241,7 @@ int main(int argc, char** argv) {
       ->envname("SHOAL_LCM_URL")
       ->capture_default_str();
   app.add_option("--budget", f.agent.budget, "bytes per second of mission time on the link, 0 = unlimited")
-      ->check(CLI::Range(int64_t{0}, int64_t{1} << 31))
+      ->check(CLI::Range(int64_t{0}, int64_t{INT32_MAX}))
       ->capture_default_str();
   app.add_option("--link", f.link,
                  "emulated on the receiving side: clean, mesh, acoustic, satellite or a file")

@@ -21,6 +21,8 @@ void Publisher::publish(const std::vector<mapping::Piece>& whole_pieces, bool re
 
 void Publisher::publishPictures(const std::vector<mapping::Piece>& layers, bool repeatable) {
   for (const mapping::Piece& layer : layers) {
+    const mapping::Piece* said = voice_.said().find(layer.key, layer.part);
+    if (said != nullptr && said->version == layer.version) continue;  // in an earlier life
     saver_.say(layer, wire::encode(layer, mission_, {}), repeatable);
     for (int32_t stale = layer.num_parts; stale < wire::kMaxPictureLayers; ++stale)
       saver_.forget(layer.key, stale);

@@ -56,6 +56,7 @@ Voice::Voice(const VoiceOptions& options, comms::Bus& bus, fusion_node::MissionS
     : options_(options),
       name_(name(options.robot)),
       trailer_(bus.trailerBytes()),
+      cut_{options.budget, static_cast<int64_t>(trailer_)},
       state_(state),
       sender_(bus, nullptr, senderOptions()) {
   bus.countInto(sender_.stats());
@@ -108,7 +109,7 @@ bool Voice::isWaiting(const mapping::Piece& piece) const {
 }
 
 size_t Voice::mostBytes(const mapping::Piece& piece) const {
-  return mostBytesOn(channelOf(name_, wire::kindOf(piece)), options_.budget, trailer_);
+  return mostBytesOn(channelOf(name_, wire::kindOf(piece)), cut_.budget, static_cast<size_t>(cut_.trailer));
 }
 
 // Topics and bricks that wait share datagrams.
@@ -125,6 +126,7 @@ std::optional<comms::Packet> Voice::join(std::span<const comms::SendQueue::Next>
 }
 
 void Voice::saveTo(Checkpoint& checkpoint) const {
+  checkpoint.cut = cut_;
   said_.visit([&](const mapping::Piece& piece) {
     const std::string key = queueKey(piece.key, piece.part);
     const comms::Packet* held = sender_.queue().held(key);
@@ -133,6 +135,7 @@ void Voice::saveTo(Checkpoint& checkpoint) const {
 }
 
 void Voice::restore(const Checkpoint& checkpoint) {
+  cut_ = checkpoint.cut;
   for (const Checkpoint::Said& said : checkpoint.said) {
     said_.apply(said.piece);
     state_.apply(said.piece);

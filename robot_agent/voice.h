@@ -51,7 +51,8 @@ class Voice {
   /// True when it was said and has not gone out.
   bool isWaiting(const mapping::Piece& piece) const;
 
-  /// Bytes of the message for a piece of this kind that carry most under the budget.
+  /// Bytes of the message for a piece of this kind that carry most under the budget; under that of the first
+  /// life, for a version that is said again must be cut into the same parts.
   size_t mostBytes(const mapping::Piece& piece) const;
 
   /// All that was said, in the newest versions.
@@ -77,6 +78,7 @@ class Voice {
   const VoiceOptions options_;
   const std::string name_;
   const size_t trailer_;  // bytes of a datagram that the bus adds
+  Checkpoint::Cut cut_;
   fusion_node::MissionState& state_;
   mapping::BeliefStore said_;
   std::map<std::string, mapping::Piece, std::less<>> offered_;  // by keys of the send queue

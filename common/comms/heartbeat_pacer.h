@@ -19,6 +19,9 @@ class HeartbeatPacer {
 
   int64_t dueAt() const { return due_us_; }
 
+  /// The next is due by then.
+  void hurry(int64_t due_us) { due_us_ = std::min(due_us_, due_us); }
+
   /// A heartbeat of `wire_bytes` went out.
   void sent(int64_t at_us, size_t wire_bytes) {
     int64_t interval_us = kIntervalUs;

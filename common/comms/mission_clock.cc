@@ -36,9 +36,14 @@ int64_t MissionClock::wallUntil(int64_t mission_us) {
 
 void MissionClock::waitUntil(int64_t mission_us) {
   while (const int64_t left_us = wallUntil(mission_us)) wall_.sleep_us(left_us);
-  advanceTo(mission_us);
+  latest_us_ = std::max(latest_us_, mission_us);  // late or early by what a sleep is
 }
 
-void MissionClock::advanceTo(int64_t mission_us) { latest_us_ = std::max(latest_us_, mission_us); }
+void MissionClock::advanceTo(int64_t mission_us) {
+  const int64_t ahead_us = mission_us - now();
+  if (ahead_us <= 0) return;
+  latest_us_ = mission_us;
+  start_us_ += ahead_us;
+}
 
 }  // namespace shoal::comms

@@ -15,8 +15,8 @@ class MissionClock {
   /// @throws std::invalid_argument unless rate is 0 or lies in [0.001, 1000].
   explicit MissionClock(double rate, int64_t start_us = 0, WallTime wall = realWallTime());
 
-  /// Mission time; never runs backwards. At rate 0 the latest time waited for or advanced to, else never
-  /// before that.
+  /// Mission time; never runs backwards. At rate 0 the latest time waited for or advanced to, else
+  /// never before that.
   int64_t now();
 
   /// Wall time left until now() reaches mission_us, for waiting in poll(): microseconds, 0 when reached and
@@ -26,7 +26,7 @@ class MissionClock {
   /// Returns with now() >= mission_us.
   void waitUntil(int64_t mission_us);
 
-  /// Makes now() at least mission_us, without waiting.
+  /// Makes now() at least mission_us, without waiting; from there it goes on at its rate.
   void advanceTo(int64_t mission_us);
 
  private:

@@ -67,6 +67,9 @@ class Sender {
   /// who pump once a second get little more than half of it. May sleep, to pace in wall time.
   int64_t pump(int64_t now_us);
 
+  /// Makes the next heartbeat due now: it goes as soon as the budget lets it.
+  void hurryHeartbeat(int64_t now_us) { heartbeat_.hurry(now_us); }
+
   /// When the next heartbeat may go.
   int64_t heartbeatDue() const { return heartbeat_.dueAt(); }
 

@@ -49,14 +49,25 @@ TEST(MissionClockTest, AsFastAsPossibleNeverWaits) {
   EXPECT_TRUE(wall.sleeps().empty());
 }
 
+TEST(MissionClockTest, GoesOnFromWhereItWasAdvancedTo) {
+  FakeWall wall;
+  MissionClock clock(10, 0, wall.time());
+  wall.pass(100'000);
+  clock.advanceTo(3'600'000'000);
+  EXPECT_EQ(clock.now(), 3'600'000'000);
+  wall.pass(200'000);
+  EXPECT_EQ(clock.now(), 3'602'000'000);
+  EXPECT_EQ(clock.wallUntil(3'604'000'000), 200'000);
+}
+
 TEST(MissionClockTest, NeverRunsBackwards) {
   FakeWall wall;
   MissionClock clock(1, 0, wall.time());
-  clock.advanceTo(10'000'000);
-  wall.pass(1'000'000);
-  EXPECT_EQ(clock.now(), 10'000'000);
   wall.pass(10'000'000);
-  EXPECT_EQ(clock.now(), 11'000'000);
+  clock.advanceTo(9'000'000);
+  EXPECT_EQ(clock.now(), 10'000'000);
+  wall.pass(-1'000'000);
+  EXPECT_EQ(clock.now(), 10'000'000);
 }
 
 TEST(MissionClockTest, RejectsARateOutOfRange) {

@@ -20,6 +20,7 @@
 #include "shoal/comms/channels.h"
 #include "shoal/comms/memory_bus.h"
 #include "shoal/mapping/atomic_file.h"
+#include "shoal/wire/heartbeat_codec.h"
 #include "shoal/wire/message_kind.h"
 #include "shoal/wire/piece_codec.h"
 #include "shoal/world/place.h"
@@ -45,10 +46,14 @@ const std::vector<world::Observation>& images() {
 }
 
 struct Plan {
-  int32_t from = 0;     // image
-  int32_t until = -1;   // image at which the signal comes; -1: after the last
-  int signal = SIGINT;  // to the agent itself
-  bool live = false;    // then it lands and lingers
+  int32_t from = 0;                 // image
+  int32_t until = -1;               // image at which the signal comes; -1: after the last
+  int signal = SIGINT;              // to the agent itself
+  bool live = false;                // then it lands and lingers
+  std::string checkpoint_dir = {};  // not where the map goes
+  double rate = 0;
+  int64_t later_us = 0;           // than the images' own times
+  bool has_mission_time = false;  // as AgentOptions
 };
 
 class Images final : public world::ObservationSource {
@@ -57,7 +62,10 @@ class Images final : public world::ObservationSource {
   std::optional<world::Observation> next() override {
     if (next_ == plan_.until || (next_ == kImages && !plan_.live)) std::raise(plan_.signal);
     if (next_ == kImages) return std::nullopt;
-    return images()[static_cast<size_t>(next_++)];
+    world::Observation seen = images()[static_cast<size_t>(next_++)];
+    if (plan_.live) seen.number -= plan_.from;  // it counts anew
+    seen.time.us += plan_.later_us;
+    return seen;
   }
   std::optional<int32_t> numObservations() const override { return kImages; }
 
@@ -100,15 +108,17 @@ class CheckpointTest : public testing::Test {
     const pid_t child = ::fork();
     if (child == 0) {
       try {
+        if (plan.rate != 0) ::alarm(60);  // ends who waits for what will not come
         fusion_node::setUpLog("R00", "off");
         fusion_node::catchStopSignals();
         AgentOptions options;
         options.explorer.keeps_pictures = true;
         options.mission = kMission;
-        options.rate = 0;
+        options.rate = plan.rate;
         options.live = plan.live;
+        options.has_mission_time = plan.has_mission_time;
         options.out_dir = top_ + "/" + folder;
-        options.checkpoint_dir = top_ + "/" + folder;
+        options.checkpoint_dir = top_ + "/" + (plan.checkpoint_dir.empty() ? folder : plan.checkpoint_dir);
         options.resume = readCheckpoint(path(folder));
         if (options.resume) options.start_us = std::max<int64_t>(options.resume->mission_us, 1);
         comms::MemoryNetwork network;
@@ -163,6 +173,16 @@ TEST_F(CheckpointTest, GoingOnEqualsNeverHavingStopped) {
     EXPECT_EQ(text("killed" + file), text("unbroken" + file)) << file;
 }
 
+// A file stands where the checkpoints' folder should be: as on a full disk nothing can be saved.
+TEST_F(CheckpointTest, WhatCannotBeSavedEndsNoFlight) {
+  mapping::writeFileAtomically(top_ + "/in_the_way", "");
+  ASSERT_EQ(fly("unsaved", {.until = 30, .checkpoint_dir = "in_the_way"}), 0);
+  ASSERT_EQ(fly("unbroken", {.until = 30}), 0);
+  EXPECT_EQ(text("unsaved/robots/R00/map.csv"), text("unbroken/robots/R00/map.csv"));
+  ASSERT_EQ(fly("unsaved_live", {.until = 40, .live = true, .checkpoint_dir = "in_the_way"}), 0);
+  EXPECT_TRUE(std::filesystem::exists(top_ + "/unsaved_live/robots/R00/map.csv"));
+}
+
 TEST_F(CheckpointTest, InFlightItIsOfABetweenImagesMoment) {
   ASSERT_EQ(WTERMSIG(fly("killed", {.until = 60, .signal = SIGKILL})), SIGKILL);
   const Checkpoint c = held("killed");
@@ -192,6 +212,18 @@ TEST_F(CheckpointTest, CtrlCInTheMiddleLeavesAWholeOne) {
   EXPECT_EQ(text("stopped33/robots/R00/map.csv"), text("unbroken/robots/R00/map.csv"));
 }
 
+// A signal too ends it in good order, so that nobody thinks it lost.
+TEST_F(CheckpointTest, WhoIsStoppedSaysThatItLeaves) {
+  const auto watch = [&](const comms::Packet& packet) {
+    const auto heartbeat = wire::decodeHeartbeat(packet.bytes);
+    if (heartbeat && heartbeat->phase == wire::Phase::kLeaving)
+      mapping::writeFileAtomically(top_ + "/left", std::to_string(heartbeat->observation));
+  };
+  ASSERT_EQ(fly("stopped", {.until = 26, .signal = SIGTERM}, watch), 0);
+  ASSERT_TRUE(std::filesystem::exists(top_ + "/left"));
+  EXPECT_EQ(text("left"), "26");  // of what it had learnt from
+}
+
 // What a live source has shown is gone: no word is said that its checkpoint does not have.
 TEST_F(CheckpointTest, ALiveRobotSaysOnlyWhatIsSaved) {
   int said = 0;
@@ -216,6 +248,70 @@ TEST_F(CheckpointTest, ALiveRobotSaysOnlyWhatIsSaved) {
   const Checkpoint c = held("live");
   EXPECT_GE(c.path.size(), 5u);
   EXPECT_GT(c.said.size(), 40u);
+}
+
+// A team's mission began an hour ago by the clock of its cameras; one robot is started now, and once more.
+TEST_F(CheckpointTest, ALiveRobotGoesByTheTimesOfItsCameras) {
+  constexpr int64_t kHourUs = 3'600'000'000;
+  int64_t latest_us = 0;
+  const auto watch = [&latest_us](const comms::Packet& packet) {
+    if (const auto heartbeat = wire::decodeHeartbeat(packet.bytes)) latest_us = heartbeat->time.us;
+    if (latest_us >= 2 * kHourUs) ::_exit(4);
+  };
+  Plan plan{.until = 10, .live = true, .rate = 1, .later_us = kHourUs, .has_mission_time = true};
+  ASSERT_EQ(fly("late", plan, watch), 0);  // and did not wait for an hour
+  plan.from = 20;
+  plan.until = 30;
+  ASSERT_EQ(fly("late", plan, watch), 0);
+  const Checkpoint c = held("late");
+  ASSERT_EQ(c.path.size(), 22u);  // with each image that was taken at the signal
+  const auto timeOf = [](size_t image) { return images()[image].time.us + kHourUs; };
+  EXPECT_EQ(c.path[0].time.us, timeOf(0));
+  EXPECT_EQ(c.path[11].time.us, timeOf(20));
+  EXPECT_EQ(c.path[21].time.us, timeOf(30));
+  EXPECT_GE(c.mission_us, timeOf(30));
+  EXPECT_LT(c.mission_us, 2 * kHourUs);
+}
+
+TEST_F(CheckpointTest, AnEpochIsANumberAndNothingElse) {
+  const std::string file = epochPath(top_, world::RobotId{0});
+  EXPECT_FALSE(readEpoch(file).has_value());
+  for (const auto& [text, epoch] : {std::pair("0\n", 0), {"7\n", 7}, {"41", 41}}) {
+    mapping::writeFileAtomically(file, text);
+    EXPECT_EQ(readEpoch(file), epoch);
+  }
+  for (const std::string text : {"", "\n", "x", "-1\n", "3 \n", "12a\n", "99999999999\n"}) {
+    mapping::writeFileAtomically(file, text);
+    try {
+      readEpoch(file);
+      ADD_FAILURE() << text;
+    } catch (const std::runtime_error& error) {
+      const std::string said = error.what();
+      EXPECT_NE(said.find(file), std::string::npos) << said;
+      EXPECT_NE(said.find('"' + text.substr(0, text.find('\n')) + '"'), std::string::npos) << said;
+    }
+  }
+}
+
+TEST_F(CheckpointTest, AnotherDetailIsRefusedByName) {
+  ASSERT_EQ(fly("fine", {.until = 7}), 0);
+  AgentOptions options;
+  options.mission = kMission;
+  options.explorer.keeps_pictures = true;
+  options.explorer.detail = mapping::Detail::kCoarse;
+  options.resume = held("fine");
+  options.start_us = 1;
+  comms::MemoryNetwork network;
+  const auto bus = network.connect();
+  Images source({});
+  try {
+    Agent(options, source, *bus);
+    ADD_FAILURE();
+  } catch (const std::invalid_argument& error) {
+    const std::string said = error.what();
+    EXPECT_NE(said.find("--detail coarse"), std::string::npos) << said;
+    EXPECT_NE(said.find("detail fine"), std::string::npos) << said;
+  }
 }
 
 TEST_F(CheckpointTest, WhatWasBegunByWhoWasKilledIsRemoved) {

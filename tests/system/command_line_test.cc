@@ -20,8 +20,8 @@ struct Outcome {
   std::string output;  // stdout and stderr
 };
 
-Outcome console(const std::string& arguments) {
-  const std::string command = "env -u SHOAL_LCM_URL '" CONSOLE "' " + arguments + " 2>&1 </dev/null";
+Outcome run(const std::string& program, const std::string& arguments) {
+  const std::string command = "env -u SHOAL_LCM_URL '" + program + "' " + arguments + " 2>&1 </dev/null";
   std::FILE* pipe = popen(command.c_str(), "r");
   Outcome outcome;
   std::array<char, 4096> buffer;
@@ -31,6 +31,8 @@ Outcome console(const std::string& arguments) {
   if (WIFEXITED(status)) outcome.exit_code = WEXITSTATUS(status);
   return outcome;
 }
+
+Outcome console(const std::string& arguments) { return run(CONSOLE, arguments); }
 
 void expectRefusal(const std::string& arguments, const std::string& said) {
   const Outcome outcome = console(arguments);
@@ -122,6 +124,21 @@ TEST(LaunchTest, NamesTheOptionThatIsWrong) {
   expectRefusal(fly + "--no-such-flag", "--no-such-flag");
   expectRefusal(launch + "--world reef:purple", "reef:purple");
   expectRefusal(launch + "--world /no/such/folder", "/no/such/folder");
+}
+
+// A heartbeat says it in 32 bits.
+TEST(BudgetTest, IsRefusedByNameWhenNoHeartbeatCouldSayIt) {
+  const std::string robot = BIN "/robot_agent", node = BIN "/fusion_node";
+  for (const auto& [program, arguments] : {std::pair(robot, "--source reef:sparse --budget 2147483648"),
+                                           {node, "--budget 2147483648"},
+                                           {robot, "--source reef:sparse --budget -1"},
+                                           {node, "--budget -1"}}) {
+    const Outcome outcome = run(program, arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << program;
+    EXPECT_NE(outcome.output.find("--budget"), std::string::npos) << outcome.output;
+  }
+  expectRefusal("launch --world reef:sparse --out " + temporaryFolder() + "/run --budget 2147483648",
+                "--budget");
 }
 
 TEST(LaunchTest, RefusesProfilesThatDoNotExist) {

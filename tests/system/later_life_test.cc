@@ -34,6 +34,14 @@ TEST(LaterLifeTest, NumbersAndTimesOfALiveSourceGoOn) {
   }
 }
 
+TEST(LaterLifeTest, TimesOfTheMissionStayAsTheyAre) {
+  LaterLife life(true, 0);
+  world::Observation shown = observed(0, 9'000'100);
+  ASSERT_TRUE(life.follows(10, shown));
+  EXPECT_EQ(shown.number, 11);
+  EXPECT_EQ(shown.time.us, 9'000'100);
+}
+
 TEST(LaterLifeTest, InTheFirstLifeNothingChanges) {
   for (const bool live : {false, true}) {
     LaterLife life(live, 0);

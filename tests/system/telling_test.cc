@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -12,6 +13,7 @@
 #include "robot_agent/publisher.h"
 #include "robot_agent/voice.h"
 #include "shoal/comms/memory_bus.h"
+#include "shoal/mapping/atomic_file.h"
 
 namespace shoal::robot_agent {
 namespace {
@@ -36,7 +38,10 @@ class TellingTest : public testing::Test {
 
   std::unique_ptr<CheckpointSaver> saver(const std::string& folder, bool counts_images = false) {
     return std::make_unique<CheckpointSaver>(
-        SaverOptions{.folder = folder, .robot = kRobot, .counts_images = counts_images},
+        SaverOptions{.folder = folder,
+                     .robot = kRobot,
+                     .counts_images = counts_images,
+                     .retry_after = std::chrono::hours(1)},
         [this] {
           Checkpoint checkpoint;
           checkpoint.mission = kMission;
@@ -112,6 +117,48 @@ TEST_F(TellingTest, InALiveFlightImagesSayWhenToSave) {
   EXPECT_TRUE(isSaid(topic(1, 10)));
 }
 
+// A file stands where the folder should be: as on a full disk nothing can be written.
+TEST_F(TellingTest, WhatCannotBeSavedWaitsAndTheRestIsSaid) {
+  mapping::writeFileAtomically(folder_, "in the way");
+  const auto saves = saver(folder_);
+  publish(*saves, topic(1, 10), false);
+  saves->save();
+  publish(*saves, topic(2, 10), false);  // newer than what is being saved
+  saves->wait();
+  EXPECT_FALSE(saves->isSaving());
+  EXPECT_TRUE(saves->isHolding());
+  saves->look();  // not tried again at once
+  EXPECT_FALSE(saves->isSaving());
+  Piece other = topic(1, 20);
+  other.key.index[0] = 1;
+  publish(*saves, other, true);
+  EXPECT_TRUE(isSaid(other));
+  saves->finish();  // once more, in vain
+  EXPECT_TRUE(saves->isHolding());
+  EXPECT_FALSE(isSaid(topic(1, 10)) || isSaid(topic(2, 10)));
+
+  std::filesystem::remove(folder_);
+  saves->save();
+  saves->wait();
+  EXPECT_TRUE(isSaid(topic(2, 10)));
+  EXPECT_FALSE(saves->isHolding());
+  EXPECT_EQ(saved().said.size(), 2u);
+  EXPECT_TRUE(std::filesystem::exists(epochPath(folder_, kRobot)));
+}
+
+TEST_F(TellingTest, ADiskThatFailedIsTriedAgainByItself) {
+  mapping::writeFileAtomically(folder_, "in the way");
+  CheckpointSaver saves(
+      {.folder = folder_, .robot = kRobot, .retry_after = {}}, [] { return Checkpoint(); }, voice_);
+  publish(saves, topic(1, 10), false);
+  saves.save();
+  saves.wait();
+  std::filesystem::remove(folder_);
+  saves.look();
+  saves.wait();
+  EXPECT_TRUE(isSaid(topic(1, 10)));
+}
+
 TEST_F(TellingTest, WhereNothingIsSavedNothingIsHeld) {
   const auto saves = saver("");
   publish(*saves, topic(1, 10), false);
@@ -128,6 +175,48 @@ TEST_F(TellingTest, WhatIsForgottenIsNotSaidWhenItIsSaved) {
   saves->save();
   saves->wait();
   EXPECT_FALSE(isSaid(topic(1, 10)));
+}
+
+// A version that is said again must be the same bytes, in the same parts.
+TEST_F(TellingTest, AfterACrashPiecesAreCutAsBefore) {
+  const auto saves = saver(folder_);
+  saves->save();
+  saves->wait();
+  for (const int64_t budget : {0, 20'000}) {
+    Voice later({.robot = kRobot, .mission = kMission, .budget = budget}, *bus_, state_);
+    ASSERT_NE(later.mostBytes(topic(1, 10)), voice_.mostBytes(topic(1, 10)));
+    later.restore(saved());
+    EXPECT_EQ(later.mostBytes(topic(1, 10)), voice_.mostBytes(topic(1, 10)));
+    Checkpoint again;
+    later.saveTo(again);
+    EXPECT_EQ(again.cut.budget, 100);
+  }
+}
+
+TEST_F(TellingTest, ACheckpointSaysWhenItWasSavedByBothClocks) {
+  Checkpoint written;
+  written.saved = {.wall_us = 12, .boot_us = 7, .boot_id = "0c4a-one"};
+  writeCheckpoint(checkpointPath(folder_, kRobot), written);
+  EXPECT_EQ(saved().saved.wall_us, 12);
+  EXPECT_EQ(saved().saved.boot_us, 7);
+  EXPECT_EQ(saved().saved.boot_id, "0c4a-one");
+}
+
+TEST_F(TellingTest, AfterACrashNoPictureIsSaidAgain) {
+  Piece picture{.key = {kRobot, mapping::PieceKind::kPicture, {0, 0, 0}},
+                .version = {0, 5},
+                .content = mapping::PicturePart{}};
+  Checkpoint checkpoint;
+  checkpoint.said.push_back({picture, false, {}});
+  voice_.restore(checkpoint);
+  const auto saves = saver("");
+  Publisher publisher(kMission, *saves, voice_);
+  publisher.restore(checkpoint);
+  publisher.publishPictures({picture}, true);  // a robot that comes back finds all of them new
+  EXPECT_FALSE(voice_.isWaiting(picture));
+  picture.version.observation = 6;
+  publisher.publishPictures({picture}, true);
+  EXPECT_TRUE(voice_.isWaiting(picture));
 }
 
 TEST_F(TellingTest, AfterACrashWhatWaitedIsSaidAgain) {
