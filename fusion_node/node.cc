@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include <spdlog/spdlog.h>
@@ -39,6 +40,10 @@ using Json = nlohmann::ordered_json;
 // Wall time between two fusions, and between two whole maps on the local bus: people look, no result waits.
 constexpr int64_t kFusePeriodMs = 200;
 constexpr int64_t kPublishPeriodMs = 1000;
+
+// Of a whole map in one turn, and how long a turn may wait for something while there is more of it.
+constexpr size_t kMostChunksPerTurn = 8;
+constexpr int kPublishTimeoutMs = 4;
 
 // Of a message with a piece of the library: on every node the same, so that its parts are.
 constexpr size_t kMostLibraryBytes = 700;
@@ -90,6 +95,7 @@ int64_t Node::wallMs() const {
 
 void Node::turn(int timeout_ms) {
   const std::string own = "SHOAL_" + options_.name + "_";
+  if (!publishing_.empty()) timeout_ms = std::min(timeout_ms, kPublishTimeoutMs);
   link_.receive(timeout_ms, [&](const comms::Packet& packet) {
     if (!packet.channel.starts_with(own)) silence_.heard(wallMs());
     hear(packet);
@@ -126,7 +132,7 @@ void Node::turn(int timeout_ms) {
     offer("LABELS", wire::encodeLabels(state_.fused().labels(), state_.mapDigest(), options_.mission,
                                        world::Timestamp{}, limit("LABELS")));
   }
-  if (state_.mapDigest() != published_digest_ && wall - published_at_ms_ >= kPublishPeriodMs) publishMap();
+  publishMap();
   const int64_t now_us = clock_.now();
   repair_.pump(now_us);
   sender_.pump(now_us);
@@ -175,15 +181,31 @@ void Node::recall() {
                state_.beliefs().robots().size(), static_cast<double>(clock_.now()) * 1e-6);
 }
 
-void Node::publishMap() {
+std::vector<comms::Packet> Node::mapPackets() {
   const std::string channel = comms::channelName(options_.name, "MAP");
+  std::vector<comms::Packet> packets;
   for (wire::Bytes& chunk :
        wire::encodeMap(state_.map(), state_.mapDigest(), options_.mission, world::Timestamp{clock_.now()},
                        wire::maxPayload(channel.size()))) {
-    sender_.sendLocal({channel, std::move(chunk)});
+    packets.push_back({channel, std::move(chunk)});
   }
-  published_digest_ = state_.mapDigest();
-  published_at_ms_ = wallMs();
+  return packets;
+}
+
+// A few chunks a turn, without waiting. A map that was begun is told to its end, even when there is a newer
+// one: who listens would never see a large map whole otherwise.
+void Node::publishMap() {
+  if (publishing_.empty()) {
+    if (state_.mapDigest() == published_digest_ || wallMs() - published_at_ms_ < kPublishPeriodMs) return;
+    std::vector<comms::Packet> packets = mapPackets();
+    publishing_.assign(std::make_move_iterator(packets.begin()), std::make_move_iterator(packets.end()));
+    published_digest_ = state_.mapDigest();
+  }
+  for (size_t said = 0; said < kMostChunksPerTurn && !publishing_.empty(); ++said) {
+    if (!sender_.trySendLocal(publishing_.front())) break;
+    publishing_.pop_front();
+  }
+  if (publishing_.empty()) published_at_ms_ = wallMs();
 }
 
 comms::Packet Node::heartbeat(int64_t now_us) {
@@ -404,7 +426,7 @@ void Node::finish() {
   }
   commit();
   state_.refreshMap();
-  publishMap();
+  for (const comms::Packet& packet : mapPackets()) sender_.sendLocal(packet);  // whole, whatever was begun
   for (const auto& [reason, count] : sender_.stats().rejected)
     spdlog::warn("refused {} messages: {}", count, reason);
   if (options_.out_dir.empty()) return;

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "fusion_node/mission_state.h"
 #include "fusion_node/node_memory.h"
@@ -47,7 +49,8 @@ class Node {
   /// @throws std::invalid_argument naming a wrong option; std::runtime_error when the state folder is taken.
   Node(const NodeOptions& options, comms::Bus& link, comms::Bus& local);
 
-  /// One turn of the loop: hear, fuse when due, send what is due. Waits up to `timeout_ms` for something.
+  /// One turn of the loop: hear, fuse when due, send what is due. Waits up to `timeout_ms` for something; of
+  /// a map for the local bus it says a few chunks, and the rest in later turns.
   void turn(int timeout_ms);
 
   /// Fuses what was heard last, tells the local bus, and writes global_map.csv and labels.csv.
@@ -63,6 +66,7 @@ class Node {
   void commit();
   void onDisk(const std::function<void()>& act);
   void recall();
+  std::vector<comms::Packet> mapPackets();
   void publishMap();
   mapping::MissionView view() const;
   mapping::MissionView overview() const;
@@ -98,6 +102,7 @@ class Node {
   std::set<std::pair<std::string, std::string>> warned_of_;  // kinds and nodes of mixtures
   int64_t looked_for_mixtures_ms_ = 0;
   uint64_t published_digest_ = 0;
+  std::deque<comms::Packet> publishing_;  // chunks of the map that is told at present
   int64_t fused_at_ms_ = 0, published_at_ms_ = 0;
 };
 

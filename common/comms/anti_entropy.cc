@@ -161,8 +161,10 @@ void AntiEntropy::heard(const PieceName& piece, uint64_t version, bool repaired,
   if (!repaired) return;
   std::erase_if(said_lately_, [&](const auto& said) { return now_us - said.second > 8 * options_.unit_us; });
   if (said_lately_.size() < kMaxRepairs) said_lately_[piece] = now_us;
-  const auto leaf = holdings_.treeOf(piece.first).find(piece.second);
-  if (!leaf || leaf->version <= version) repairs_.erase(piece);
+  if (const auto planned = repairs_.find(piece); planned != repairs_.end()) {  // else no tree need be made
+    const auto leaf = holdings_.treeOf(piece.first).find(piece.second);
+    if (!leaf || leaf->version <= version) repairs_.erase(planned);
+  }
   if (isOwn(piece.first)) return;
   // Somebody is at it: whoever speaks first goes on.
   const int64_t later_us = now_us + holderBackOff(piece.first);

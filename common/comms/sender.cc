@@ -183,6 +183,12 @@ void Sender::sendLocal(const Packet& packet) {
   stats_.countSent(TrafficClass::kLocal, wireSize(packet) + local_->trailerBytes(), false);
 }
 
+bool Sender::trySendLocal(const Packet& packet) {
+  if (local_ != nullptr && !pacer_.isFree()) return false;
+  sendLocal(packet);
+  return true;
+}
+
 int64_t Sender::earliest(int64_t now_us, const Packet& packet) const {
   return budget_.earliest(now_us, wireSize(packet));
 }

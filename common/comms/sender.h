@@ -76,6 +76,9 @@ class Sender {
   /// Sends at once on the local bus: class local, paced in wall time, outside the budget.
   void sendLocal(const Packet& packet);
 
+  /// The same if it need not sleep for that; else false, and nothing is sent.
+  bool trySendLocal(const Packet& packet);
+
   /// Bytes on the wire that it will take to say all that waits, with pieces sharing datagrams as they will:
   /// exact while a class takes few datagrams, else from a few that are made of what waits for a trial, evenly
   /// spread. A class is tried again when an eighth of what waits in it is other than it was, but one a call;

@@ -25,4 +25,9 @@ void WallPacer::pace() {
   for (; now_us < wake_us; now_us = wall_.now_us()) wall_.sleep_us(wake_us - now_us);
 }
 
+bool WallPacer::isFree() const {
+  const int64_t now_us = wall_.now_us();
+  return std::max(paid_until_us_ - now_us, int64_t{0}) + options_.gap_us <= options_.burst * options_.gap_us;
+}
+
 }  // namespace shoal::comms

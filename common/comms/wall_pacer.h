@@ -26,6 +26,9 @@ class WallPacer {
   /// sleeps are more exact than many short ones).
   void pace();
 
+  /// Whether pace() would not sleep now. Who cannot wait asks, and comes back later.
+  bool isFree() const;
+
  private:
   WallPacerOptions options_;
   WallTime wall_;

@@ -18,6 +18,23 @@ namespace {
   throw std::runtime_error(what + " " + path + ": " + std::strerror(errno));
 }
 
+// Gives the file up.
+[[noreturn]] void failWithout(const std::string& temporary, const std::string& what,
+                              const std::string& path) {
+  const int reason = errno;
+  ::unlink(temporary.c_str());
+  errno = reason;
+  fail(what, path);
+}
+
+// So that a rename outlives a loss of power. Some network file systems cannot: then nothing more can be done.
+void syncFolder(const std::filesystem::path& folder) {
+  const int opened = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (opened < 0) return;
+  ::fsync(opened);
+  ::close(opened);
+}
+
 }  // namespace
 
 void writeFileAtomically(const std::string& path, std::string_view content) {
@@ -38,16 +55,19 @@ void writeFileAtomically(const std::string& path, std::span<const std::string_vi
       if (n < 0) {
         const int reason = errno;
         ::close(file);
-        ::unlink(temporary.c_str());
         errno = reason;
-        fail("cannot write", temporary);
+        failWithout(temporary, "cannot write", temporary);
       }
       rest.remove_prefix(static_cast<size_t>(n));
     }
   }
-  ::fsync(file);
-  ::close(file);
-  if (::rename(temporary.c_str(), path.c_str()) != 0) fail("cannot rename to", path);
+  const bool is_synced = ::fsync(file) == 0;
+  const int reason = errno;
+  const bool is_closed = ::close(file) == 0;  // network file systems say only now that a disk is full
+  if (!is_synced) errno = reason;
+  if (!is_synced || !is_closed) failWithout(temporary, "cannot write", temporary);
+  if (::rename(temporary.c_str(), path.c_str()) != 0) failWithout(temporary, "cannot rename to", path);
+  syncFolder(folder);
 }
 
 std::string readFile(const std::string& path) {

@@ -7,9 +7,9 @@
 
 namespace shoal::mapping {
 
-/// Writes a file whole or not at all: to a temporary name in the same folder, flushed, then renamed. Makes
-/// the folder when it is missing.
-/// @throws std::runtime_error naming the path and what the system said.
+/// Writes a file whole or not at all: to a temporary name in the same folder, flushed, then renamed; then
+/// the folder is flushed, where its file system can. Makes the folder when it is missing.
+/// @throws std::runtime_error naming the path and what the system said; the temporary file is gone then.
 void writeFileAtomically(const std::string& path, std::string_view content);
 
 /// The same of what lies in several places, one after the other.

@@ -3,39 +3,9 @@
 
 #include <algorithm>
 
+#include "shoal/mapping/topic_groups.h"
+
 namespace shoal::mapping {
-namespace {
-
-// Which topics are one thing by links alone, and which of these groups are not the same.
-class Groups {
- public:
-  // False when it contradicts what is there.
-  bool add(const TopicPair& pair, bool apart) {
-    const Topic a = rootOf(pair.first), b = rootOf(pair.second);
-    if (apart) {
-      if (a == b) return false;
-      apart_.push_back(pair);
-      return true;
-    }
-    for (const auto& [c, d] : apart_) {
-      const Topic first = rootOf(c), second = rootOf(d);
-      if ((first == a && second == b) || (first == b && second == a)) return false;
-    }
-    if (a != b) parent_[std::max(a, b)] = std::min(a, b);
-    return true;
-  }
-
- private:
-  Topic rootOf(Topic topic) const {
-    for (auto up = parent_.find(topic); up != parent_.end(); up = parent_.find(topic)) topic = up->second;
-    return topic;
-  }
-  std::map<Topic, Topic> parent_;  // towards the least
-  std::vector<TopicPair> apart_;
-};
-
-}  // namespace
-
 std::string_view toText(Standing standing) {
   switch (standing) {
     case Standing::kInForce:
@@ -79,7 +49,7 @@ Judgement judge(std::span<const Edit> edits, const BeliefStore& beliefs, std::ve
   const auto topicOf = [](const TopicRef& t) { return Topic{t.robot, t.topic}; };
   Judgement judgement;
   std::set<TopicPair> decided;
-  Groups groups;
+  TopicGroups groups;
   for (size_t i = edits.size(); i-- > 0;) {  // the newest first: it decides
     const Edit& edit = edits[i];
     if (undone.contains(edit.id)) {
@@ -99,7 +69,7 @@ Judgement judge(std::span<const Edit> edits, const BeliefStore& beliefs, std::ve
         became[i] = Standing::kVoid;
       } else if (!decided.insert(pair).second) {
         became[i] = Standing::kReplaced;
-      } else if (!groups.add(pair, link->apart)) {
+      } else if (!groups.add(pair.first, pair.second, link->apart)) {
         became[i] = Standing::kOverruled;
       } else {
         (link->apart ? judgement.apart : judgement.links).push_back(pair);

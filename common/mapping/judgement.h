@@ -11,6 +11,7 @@
 
 #include "shoal/mapping/belief_store.h"
 #include "shoal/mapping/edit.h"
+#include "shoal/mapping/topic_groups.h"
 
 namespace shoal::mapping {
 
@@ -24,8 +25,6 @@ enum class Standing {
 };
 std::string_view toText(Standing standing);
 
-/// A topic of the present epoch.
-using Topic = std::pair<world::RobotId, world::TopicId>;
 using TopicPair = std::pair<Topic, Topic>;
 
 /// What a topic is called, and how new that is: greater is later.

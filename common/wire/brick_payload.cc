@@ -77,7 +77,7 @@ bool codeBricks(Coder& coder, std::span<Piece> pieces, OccupancyOf occupancy_of,
   GeometryCoder geometry;
   for (size_t i = 0; i < pieces.size(); ++i) {
     const size_t before = field.cells().size();
-    geometry.code(coder, pieces[i].key.index, occupancy_of(i), field);
+    if (!geometry.code(coder, pieces[i].key.index, occupancy_of(i), field)) return false;
     const size_t cells = field.cells().size();
     if (cells > kMaxCellsPerMessage || cells == before || coder.overrun()) return false;
     ends.push_back(cells);

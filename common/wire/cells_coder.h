@@ -24,6 +24,12 @@ class Occupancy {
   void set(int x, int y, int z) { columns_[index(x, y)] |= static_cast<uint16_t>(1u << z); }
   uint16_t column(int x, int y) const { return columns_[index(x, y)]; }
 
+  /// The lowest and the highest z of its cells; (16, -1) without any.
+  std::pair<int, int> heights() const;
+
+  /// How many places are asked about, is there a cell? All that are no lower or higher than its cells.
+  size_t numPlaces() const;
+
   /// Every cell lies in one brick, and is taken modulo its edge.
   template <typename Cells>
   static Occupancy of(const Cells& cells) {
@@ -45,8 +51,11 @@ class GeometryCoder {
   GeometryCoder();
 
   /// Adds the cells of one more brick to `field`. When reading, `occupancy` is not looked at.
+  /// @returns false, before any of its places is coded, when those of all bricks are more than
+  /// kMaxPlacesPerMessage.
   template <typename Coder>
-  void code(Coder& coder, const std::array<int32_t, 3>& brick, const Occupancy& occupancy, CellField& field);
+  [[nodiscard]] bool code(Coder& coder, const std::array<int32_t, 3>& brick, const Occupancy& occupancy,
+                          CellField& field);
 
  private:
   using Around = std::array<uint32_t, 4>;  // CellField::heights() of four columns
@@ -56,6 +65,7 @@ class GeometryCoder {
   int codePlace(Coder& coder, const CellField& field, const std::array<int, 3>& place, const Around& around,
                 bool alone, bool has_cell, size_t state, int bit);
 
+  size_t places_ = 0;  // asked about so far
   BitTree lowest_{4}, highest_{4};
   std::vector<ContextBit> alike_;
   ContextTable heights_, diagonals_, corners_, lines_, slopes_, patterns_;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <bit>
 
 #include "shoal/wire/cells_coder.h"
+#include "shoal/wire/limits.h"
 #include "shoal/wire/range_coder.h"
 
 namespace shoal::wire {
@@ -9,21 +11,8 @@ namespace {
 
 constexpr int kEdge = mapping::kBrickEdge;
 
-struct Heights {
-  int lowest = kEdge, highest = -1;
-};
-
-Heights heightsOf(const Occupancy& occupancy) {
-  Heights heights;
-  for (int x = 0; x < kEdge; ++x) {
-    for (int y = 0; y < kEdge; ++y) {
-      const uint16_t column = occupancy.column(x, y);
-      if (column == 0) continue;
-      heights.lowest = std::min(heights.lowest, std::countr_zero(column));
-      heights.highest = std::max(heights.highest, static_cast<int>(std::bit_width(column)) - 1);
-    }
-  }
-  return heights;
+size_t placesBetween(int lowest, int highest) {
+  return static_cast<size_t>(std::max(highest - lowest + 1, 0)) * kEdge * kEdge;
 }
 
 constexpr int kNone = CellField::kNone;
@@ -41,6 +30,18 @@ size_t trendTo(bool known, int height, int z) {
 }
 
 }  // namespace
+
+std::pair<int, int> Occupancy::heights() const {
+  uint16_t all = 0;
+  for (const uint16_t column : columns_) all |= column;
+  if (all == 0) return {kEdge, -1};
+  return {std::countr_zero(all), static_cast<int>(std::bit_width(all)) - 1};
+}
+
+size_t Occupancy::numPlaces() const {
+  const auto [lowest, highest] = heights();
+  return placesBetween(lowest, highest);
+}
 
 GeometryCoder::GeometryCoder()
     : alike_(64),
@@ -93,11 +94,13 @@ int GeometryCoder::codePlace(Coder& coder, const CellField& field, const std::ar
 }
 
 template <typename Coder>
-void GeometryCoder::code(Coder& coder, const std::array<int32_t, 3>& brick, const Occupancy& occupancy,
+bool GeometryCoder::code(Coder& coder, const std::array<int32_t, 3>& brick, const Occupancy& occupancy,
                          CellField& field) {
-  const Heights own = heightsOf(occupancy);
-  const auto lowest = static_cast<int>(lowest_.code(coder, static_cast<uint32_t>(own.lowest)));
-  const auto highest = static_cast<int>(highest_.code(coder, static_cast<uint32_t>(own.highest)));
+  const auto [own_lowest, own_highest] = occupancy.heights();
+  const auto lowest = static_cast<int>(lowest_.code(coder, static_cast<uint32_t>(own_lowest)));
+  const auto highest = static_cast<int>(highest_.code(coder, static_cast<uint32_t>(own_highest)));
+  places_ += placesBetween(lowest, highest);
+  if (places_ > kMaxPlacesPerMessage) return false;
   field.beginBrick(brick);
   for (int x = 0; x < kEdge; ++x) {
     for (int y = 0; y < kEdge; ++y) {
@@ -120,9 +123,10 @@ void GeometryCoder::code(Coder& coder, const std::array<int32_t, 3>& brick, cons
       }
     }
   }
+  return true;
 }
 
-template void GeometryCoder::code(Encoder&, const std::array<int32_t, 3>&, const Occupancy&, CellField&);
-template void GeometryCoder::code(Decoder&, const std::array<int32_t, 3>&, const Occupancy&, CellField&);
+template bool GeometryCoder::code(Encoder&, const std::array<int32_t, 3>&, const Occupancy&, CellField&);
+template bool GeometryCoder::code(Decoder&, const std::array<int32_t, 3>&, const Occupancy&, CellField&);
 
 }  // namespace shoal::wire

@@ -27,6 +27,8 @@ inline constexpr int32_t kMaxParts = 255;
 inline constexpr int32_t kMaxBrickCells = 16 * 16 * 16;
 inline constexpr size_t kMaxBricksPerMessage = 1024;
 inline constexpr size_t kMaxCellsPerMessage = 32768;
+inline constexpr size_t kMaxPlacesPerMessage =
+    131072;  // asked about, is there a cell? Decoding takes so long
 inline constexpr int32_t kMaxPictureLayers = 4;
 inline constexpr size_t kMaxLayerBytes = 540;
 inline constexpr size_t kMaxTopicsPerMessage = 256;

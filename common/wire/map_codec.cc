@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "shoal/demand.h"
 #include "shoal/mapping/piece.h"
 #include "shoal/wire/cells_coder.h"
 #include "shoal/wire/cut.h"
@@ -79,7 +80,7 @@ Bytes encodeValid(const MapChunk& chunk, int32_t mission, world::Timestamp time)
   Encoder encoder;
   if (!chunk.cells.empty()) {
     CellField field;
-    GeometryCoder().code(encoder, chunk.brick, Occupancy::of(chunk.cells), field);
+    SHOAL_DEMAND(GeometryCoder().code(encoder, chunk.brick, Occupancy::of(chunk.cells), field));
     Columns columns{
         Palette::of(chunk.cells, [](const GlobalCell& c) -> int64_t { return number(c.label); }),
         Palette::of(chunk.cells, [](const GlobalCell& c) -> int64_t { return number(c.robot); }),
@@ -94,7 +95,7 @@ bool decodeCells(std::span<const uint8_t> payload, int32_t num_cells, MapChunk& 
   if (num_cells == 0) return true;
   Decoder decoder(payload);
   CellField field;
-  GeometryCoder().code(decoder, chunk.brick, {}, field);
+  if (!GeometryCoder().code(decoder, chunk.brick, {}, field)) return false;
   if (std::ssize(field.cells()) != num_cells) return false;
   Columns columns;
   if (!codeColumns(decoder, field, columns)) return false;

@@ -8,6 +8,7 @@
 #include <shoal/topics_t.hpp>
 #include <stdexcept>
 
+#include "shoal/wire/cells_coder.h"
 #include "shoal/wire/cut.h"
 #include "shoal/wire/edit_message.h"
 #include "shoal/wire/message.h"
@@ -184,12 +185,21 @@ size_t numCells(const Piece& piece) {
   return 0;
 }
 
+// Asked about to say where its cells are.
+size_t numPlaces(const Piece& piece) {
+  if (const auto* brick = std::get_if<BrickPart>(&piece.content))
+    return Occupancy::of(brick->cells).numPlaces();
+  if (const auto* certainty = std::get_if<CertaintyPart>(&piece.content))
+    return Occupancy::of(certainty->cells).numPlaces();
+  return 0;
+}
+
 // Why pieces in order of their keys cannot share a message; empty when they can.
 std::string faultTogether(std::span<const Piece* const> pieces) {
   const PieceKind kind = pieces.front()->key.kind;
   if (pieces.size() > (kind == PieceKind::kTopic ? kMaxTopicsPerMessage : kMaxBricksPerMessage))
     return "more than 1024 bricks or 256 topics";
-  size_t cells = 0, words = 0;
+  size_t cells = 0, places = 0, words = 0;
   for (size_t i = 0; i < pieces.size(); ++i) {
     const Piece& first = *pieces.front();
     const Piece& piece = *pieces[i];
@@ -206,8 +216,10 @@ std::string faultTogether(std::span<const Piece* const> pieces) {
         return "of several vocabularies";
     }
     cells += numCells(piece);
+    places += numPlaces(piece);
   }
   if (cells > kMaxCellsPerMessage) return "more than 32768 cells together";
+  if (places > kMaxPlacesPerMessage) return "more than 131072 places for cells together";
   if (words > kMaxWordsPerMessage) return "more than 65536 words together";
   return {};
 }

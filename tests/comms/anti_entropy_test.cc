@@ -195,6 +195,35 @@ std::vector<std::unique_ptr<Holder>> holders(int count) {
   return all;
 }
 
+// Counts how often it is asked for the tree of a share: who holds it may have to make it anew each time.
+class CountingHoldings final : public Holdings {
+ public:
+  const DigestTree& treeOf(int32_t) override {
+    ++num_trees;
+    return tree;
+  }
+  bool isDoubted(int32_t) override { return true; }
+  bool isStillSaid(int32_t) override { return false; }
+  DigestTree tree;
+  int num_trees = 0;
+};
+
+TEST(AntiEntropyTest, ARepairThatWasNotPlannedHereNeedsNoTree) {
+  CountingHoldings holdings;
+  holdings.tree = DigestTree({leaf(7, 3), leaf(8, 3)});
+  AntiEntropy talk({.seed = 1}, holdings);
+  for (uint64_t key = 100; key < 1100; ++key) talk.heard({9, key}, 1, true, 0);
+  EXPECT_EQ(holdings.num_trees, 0);
+  talk.hear({1, {{Statement::Kind::kWanted, 9, false, {}, {}, {{7, 3}, {8, 3}}}}}, 0);
+  EXPECT_EQ(talk.numRepairs(), 2u);
+  holdings.num_trees = 0;
+  talk.heard({9, 7}, 2, true, 0);  // older than what is held: it will be said all the same
+  EXPECT_EQ(talk.numRepairs(), 2u);
+  talk.heard({9, 7}, 3, true, 0);
+  EXPECT_EQ(talk.numRepairs(), 1u);
+  EXPECT_EQ(holdings.num_trees, 2);
+}
+
 // Share 9 has no owner here. Two nodes, a thousand pieces, and one of them is older here than there.
 TEST(AntiEntropyTest, TwoNodesFindOnePieceInAFewHundredBytes) {
   std::vector<std::unique_ptr<Holder>> all = holders(2);

@@ -169,6 +169,20 @@ TEST(SenderTest, LocalPacketsAreCountedApartAndCostNoBudget) {
   EXPECT_GE(node.wall.now(), 123'456 + (50 - 8) * 1000);
 }
 
+TEST(SenderTest, ALocalPacketThatWouldWaitIsLeftToTheCaller) {
+  Node node({});
+  const Packet chunk = packet("SHOAL_OPERATOR_MAP", 1000);
+  int sent = 0;
+  while (node.sender->trySendLocal(chunk)) ++sent;
+  EXPECT_EQ(sent, 8);  // a burst
+  node.wall.pass(3000);
+  while (node.sender->trySendLocal(chunk)) ++sent;
+  EXPECT_EQ(sent, 8 + 3);
+  EXPECT_EQ(node.local->receive(0, [](const Packet&) {}), sent);
+  EXPECT_EQ(node.sender->stats().of(TrafficClass::kLocal).datagrams, 11u);
+  EXPECT_TRUE(node.wall.sleeps().empty());
+}
+
 TEST(SenderTest, AfterACrashWaitsUntilNoWindowCanBeOverBudget) {
   const SenderOptions options{.bytes_per_s = 1000};
   WindowMeter meter(1000);

@@ -18,10 +18,18 @@ import shoal.spy.Team;
 
 /**
  * SpyMapTest LOG OUT GOLDEN...: what the spy's window makes of a recording, as OUT/spy_map.txt and a picture a robot;
- * then damaged golden messages, each of which is refused or read.
+ * then damaged golden messages, each of which is refused or read. SpyMapTest --refused MESSAGE: why it is.
  */
 public class SpyMapTest {
   public static void main(String[] arguments) throws Exception {
+    if (arguments[0].equals("--refused")) {
+      try {
+        System.out.println("read: " + Piece.read(Files.readAllBytes(Path.of(arguments[1]))).size() + " pieces");
+      } catch (BadMessage bad) {
+        System.out.println("refused: " + bad.getMessage());
+      }
+      return;
+    }
     Team team = new Team();
     Log log = new Log(arguments[0], "r");
     try {

@@ -65,6 +65,13 @@ DecodeError errorOf(MessageKind kind, const Bytes& bytes) {
   return error;
 }
 
+// 1024 bricks of few cells, each between its floor and its ceiling: 4 million places in 578 bytes.
+TEST(HostileTest, LooksForCellsInSoManyPlacesOnly) {
+  const Bytes bytes = readFile(std::string(SHOAL_GOLDEN_DIR) + "/hostile/places.bin");
+  ASSERT_EQ(bytes.size(), 578u);
+  EXPECT_EQ(errorOf(MessageKind::kBrick, bytes), DecodeError::kBadPayload);
+}
+
 class GoldenTest : public testing::TestWithParam<Example> {};
 INSTANTIATE_TEST_SUITE_P(All, GoldenTest, testing::ValuesIn(goldenExamples()),
                          [](const auto& instance) { return instance.param.name; });

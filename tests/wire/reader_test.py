@@ -101,6 +101,11 @@ class Messages(unittest.TestCase):
                     refused[error.reason] += 1
         self.assertEqual(set(refused), {"unknown format", "field out of range", "bad payload", "not canonical", "too short"})
 
+    def test_cells_are_looked_for_in_so_many_places_only(self):
+        with self.assertRaises(shoal_reader.BadMessage) as caught:
+            shoal_reader.decode(read(SOURCE + "/tests/data/wire/hostile/places.bin"))
+        self.assertEqual(caught.exception.reason, "bad payload")
+
     def test_another_format_is_refused_by_that_reason(self):
         for data in golden().values():
             with self.assertRaises(shoal_reader.BadMessage) as caught:

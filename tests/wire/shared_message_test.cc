@@ -238,5 +238,27 @@ TEST(SharedMessageTest, HasACapOnCells) {
   EXPECT_TRUE(*decoded == pieces);
 }
 
+// Nor look for cells in more places: a few cells each on the floor and the ceiling of a brick are 4096
+// places.
+TEST(SharedMessageTest, HasACapOnPlaces) {
+  std::vector<Piece> pieces;
+  for (int x = 0; x < 33; ++x) {
+    BrickPart tall;
+    for (const int z : {0, 15}) tall.cells.push_back({{16 * x, 0, z}, world::TopicId{1}, {0}});
+    pieces.push_back({{world::RobotId{0}, PieceKind::kBrick, {x, 0, 0}}, {0, 1}, 0, 1, tall});
+  }
+  Random random(8);
+  for (auto some : {pieces, certaintiesOf(pieces, random)}) {
+    EXPECT_THROW(encode(some, 1, {}), std::invalid_argument);
+    std::vector<const Piece*> pointers;
+    for (const Piece& piece : some) pointers.push_back(&piece);
+    EXPECT_FALSE(encodeTogether(pointers, 1));
+    some.pop_back();
+    const auto decoded = decodePieces(kindOf(some.front()), encode(some, 1, {}));  // 131072 places
+    ASSERT_TRUE(decoded.ok());
+    EXPECT_TRUE(*decoded == some);
+  }
+}
+
 }  // namespace
 }  // namespace shoal::wire

@@ -37,6 +37,9 @@ def golden_log(path):
             log.write(struct.pack(">IqqII", 0xEDA1DA01, i, i, len(channel), len(data)) + channel + data)
 
 
+HOSTILE = os.path.join(SOURCE, "tests", "data", "wire", "hostile", "places.bin")  # refused by both
+
+
 def close(a, b):
     """Java's HSB and Python's HSV may round a channel to either side."""
     return all(abs(int(a[i:i + 2], 16) - b[i // 2]) <= 1 for i in (0, 2, 4))
@@ -90,6 +93,9 @@ def main():
                         os.path.join(SOURCE, "tests", "wire", "SpyMapTest.java")], check=True)
         golden_log(os.path.join(work, "golden.lcmlog"))
         compare(os.path.join(work, "golden.lcmlog"), work, GOLDEN)
+        refused = subprocess.run(["java", "-cp", JARS + ":" + work, "SpyMapTest", "--refused", HOSTILE],
+                                 timeout=60, stdout=subprocess.PIPE, text=True).stdout
+        assert refused == "refused: places for cells\n", refused
         subprocess.run([WRITE_RECORDING, work], check=True, timeout=60)
         for log in [os.path.join(work, "mission.lcmlog"), *sys.argv[5:]]:
             compare(log, work)

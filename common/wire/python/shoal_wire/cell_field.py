@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Which cells a message speaks of, and what each has around it that came before."""
 from .bit_mixer import Contexts, Mixer
+from .errors import require
+from .layout import MAX_PLACES
 from .range_coder import Models
 
 # Columns in whose cells a cell looks for its like, nearest first: dx, dy, weight.
@@ -76,10 +78,13 @@ class Geometry:
         self.heights, self.diagonals, self.corners = Contexts(), Contexts(), Contexts()
         self.lines, self.slopes, self.patterns = Contexts(), Contexts(), Contexts()
         self.mixer = Mixer(7)
+        self.places = 0  # asked about so far
 
     def read(self, bits, brick, field):
         """Adds the cells of a brick to `field`."""
         lowest, highest = bits.tree(self.lowest, 4), bits.tree(self.highest, 4)
+        self.places += 256 * max(highest - lowest + 1, 0)
+        require(self.places <= MAX_PLACES, "places for cells", "bad payload")
         x0, y0, z0 = (16 * index for index in brick)
 
         for x in range(x0, x0 + 16):

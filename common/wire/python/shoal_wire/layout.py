@@ -9,6 +9,7 @@ OPERATORS = 10000  # what operators decided is a share of the state beside those
 MAX_LABEL = 99999999
 MAX_VOCABULARY = 2**20
 MAX_CELLS = 32768  # of all bricks in a message
+MAX_PLACES = 131072  # asked about, is there a cell?
 MAX_WORDS, MAX_TOPICS = 65536, 256  # of a message
 FORMAT = 3
 MAX_LAYER = 540  # bytes of a picture in one message

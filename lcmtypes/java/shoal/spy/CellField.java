@@ -12,10 +12,12 @@ final class CellField {
       {-1, 0, 16}, {0, -1, 16}, {-1, -1, 9}, {-1, 1, 9}, {1, -1, 9}, {-2, 0, 5}, {0, -2, 5}, {-2, -1, 4}, {-1, -2, 4},
       {-2, 1, 4},  {-1, 2, 4},  {1, -2, 4},  {2, -1, 4}, {-2, -2, 3}, {-2, 2, 3}, {2, -2, 3}, {-3, 0, 2}, {0, -3, 2}};
   static final int PLACES = COLUMNS.length + 1;
+  private static final int MAX_ASKED = 131072;  // of a message
 
   final List<int[]> cells = new ArrayList<>();  // x, y, z
   final List<int[]> near = new ArrayList<>();   // PLACES indices into cells, -1 where there is none
   private final HashMap<Long, List<int[]>> columns = new HashMap<>();  // (x, y) -> {z, place}, ascending
+  private int asked = 0;  // places, so far: is there a cell?
   private final BitReader.Models lowest = new BitReader.Models(), highest = new BitReader.Models();
   private final int[][] alike = new int[64][];
   private final BitMixer.Contexts heights = new BitMixer.Contexts(), diagonals = new BitMixer.Contexts(),
@@ -101,6 +103,8 @@ final class CellField {
   /** Adds the cells of the brick with these indices. */
   void readBrick(BitReader bits, int brickX, int brickY, int brickZ) throws BadMessage {
     int low = bits.tree(lowest, 4), high = bits.tree(highest, 4);
+    asked += 256 * Math.max(high - low + 1, 0);
+    BadMessage.require(asked <= MAX_ASKED, "places for cells");
     int x0 = 16 * brickX, y0 = 16 * brickY, z0 = 16 * brickZ;
     for (int x = x0; x < x0 + 16; ++x) {
       for (int y = y0; y < y0 + 16; ++y) {

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A fusion node on buses of memory: what it says, and when.
+#include "fusion_node/node.h"
+
+#include <memory>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "shoal/comms/memory_bus.h"
+#include "shoal/wire/map_codec.h"
+#include "shoal/wire/piece_codec.h"
+
+namespace shoal::fusion_node {
+namespace {
+
+constexpr int32_t kMission = 7;
+
+class NodeTest : public testing::Test {
+ protected:
+  static NodeOptions options() {
+    NodeOptions options;
+    options.mission = kMission;
+    options.rate = 0;
+    return options;
+  }
+
+  comms::MemoryNetwork network_, here_;
+  std::unique_ptr<comms::MemoryBus> air_ = network_.connect(), ears_ = network_.connect();
+  std::unique_ptr<comms::MemoryBus> listener_ = here_.connect(), local_ = here_.connect();
+};
+
+// One brick a chunk. Between two turns the node listens and answers.
+TEST_F(NodeTest, SaysAFewChunksOfItsMapATurnAndAllInTheEnd) {
+  constexpr int kBricks = 100;
+  NodeOptions unlimited = options();
+  unlimited.budget = 0;
+  Node node(unlimited, *ears_, *local_);
+  for (int x = 0; x < kBricks; ++x) {
+    const mapping::Piece brick{
+        .key = {world::RobotId{1}, mapping::PieceKind::kBrick, {x, 0, 0}},
+        .version = {0, 1},
+        .content = mapping::BrickPart{{{{16 * x, 0, 0}, world::TopicId{0}, {1'000'000}}}}};
+    air_->publish({"SHOAL_R01_BRICK", wire::encode(brick, kMission, {})});
+  }
+  std::set<int32_t> chunks;
+  for (int turn = 0; turn < 100'000 && chunks.size() < kBricks; ++turn) {
+    node.turn(1);
+    int said = 0;
+    listener_->receive(0, [&](const comms::Packet& packet) {
+      const auto chunk = wire::decodeMap(packet.bytes);
+      ASSERT_TRUE(chunk.ok());
+      ++said;
+      if (chunk->num_chunks == kBricks) chunks.insert(chunk->chunk);
+    });
+    ASSERT_LE(said, 8);
+  }
+  EXPECT_EQ(chunks.size(), size_t{kBricks});
+  node.finish();
+  int last = 0;
+  listener_->receive(0, [&](const comms::Packet&) { ++last; });
+  EXPECT_EQ(last, kBricks);  // at the end all at once
+}
+
+}  // namespace
+}  // namespace shoal::fusion_node
