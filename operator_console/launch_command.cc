@@ -86,7 +86,8 @@ void addLaunchCommand(CLI::App& app, Action& chosen) {
   command->add_option("--depth-holes", o.sensors.depth_holes, "part of the depth that is missing")
       ->capture_default_str();
   command->add_option("--out", o.out, "folder for the mission's files");
-  command->add_flag("--overwrite", o.overwrite, "replace a finished mission in --out");
+  command->add_flag("--overwrite", o.overwrite,
+                    "replace a mission in --out, ended or interrupted, with all its files");
   command->add_flag("--single", o.single, "also fly one robot over the whole area, into single/");
   command->add_flag("--record", o.record, "record all messages with lcm-logger, into mission.lcmlog");
   command->add_option("--lcm-url", o.lcm_url, "multicast group (default: a free port of this host)")

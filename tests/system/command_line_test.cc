@@ -167,6 +167,30 @@ TEST(LaunchTest, KeepsAFinishedMission) {
   EXPECT_TRUE(std::filesystem::exists(folder + "/summary.json"));
 }
 
+// What a crash left: the recording, decisions, what the node remembers.
+TEST(LaunchTest, KeepsWhatIsLeftOfAMissionThatDidNotEnd) {
+  const std::string launch = "launch --world reef:sparse --observations 1 --out ";
+  for (const std::string name : {"mission.lcmlog", "edits.json", "state/mission-5.sqlite"}) {
+    const std::string folder = temporaryFolder();
+    std::filesystem::create_directories(folder + "/state");
+    std::filesystem::create_directories(folder + "/logs");
+    std::ofstream(folder + "/logs/OPERATOR.log") << "killed\n";
+    std::ofstream(folder + "/" + name) << "x";
+    const std::string ask = "labels --log " + folder + "/" + name;
+    expectRefusal(launch + folder, "a mission that did not end (" + name + ")");
+    expectRefusal(launch + folder, "add --overwrite");
+    if (name != "edits.json") {
+      expectRefusal(launch + folder, ask);
+      EXPECT_NE(console("labels --run " + folder)
+                    .output.find("it has no summary.json; what is left of it "
+                                 "answers: operator_console " +
+                                 ask),
+                std::string::npos);
+    }
+    EXPECT_TRUE(std::filesystem::exists(folder + "/" + name));
+  }
+}
+
 TEST(LaunchTest, ReadsFlagsFromMissionToml) {
   const std::string folder = temporaryFolder();
   const std::string launch = "launch --out " + folder + "/run --config " + folder + "/mission.toml";
