@@ -275,6 +275,19 @@ TEST_F(QuestionsTest, WatchingEndsWhenNobodyReads) {
   }
 }
 
+// Lines are whole where no terminal ends them, and have no blanks at their ends.
+TEST_F(QuestionsTest, NothingIsCutInPipes) {
+  const std::string folder = folder_ + "/whole", run = " --run " + folder;
+  SmallMission::write(folder);
+  const std::string name = "a very long name for a label, longer than any table is wide";
+  ask("name 4 \"" + name + "\"" + run);
+  for (const std::string question : {"edits", "events"}) {
+    const std::string said = console(question + run).output;
+    EXPECT_NE(said.find(name), std::string::npos) << said;
+    EXPECT_EQ(said.find(" \n"), std::string::npos) << said;
+  }
+}
+
 TEST_F(QuestionsTest, ExportsGeoJsonOfAllLabels) {
   const std::string out = folder_ + "/map.geojson";
   EXPECT_EQ(console("export --format geojson --out " + out + run()).exit_code, 0);
