@@ -189,6 +189,7 @@ Json askRun(const Where& where, const Json& question) {
 // A recording, and what was decided since.
 RecordedMission recordingWithEdits(const Where& where) {
   RecordedMission recorded = readRecording(where.log, where.matcher, {}, {}, where.key);
+  warnOfSeals(where.log, recorded.seals);
   for (const mapping::Edit& edit : mapping::readEdits(editsPathOf(where), recorded.mission)) {
     recorded.state.apply(mapping::pieceOf(edit));
   }

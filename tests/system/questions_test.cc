@@ -288,6 +288,15 @@ TEST_F(QuestionsTest, NothingIsCutInPipes) {
   }
 }
 
+TEST_F(QuestionsTest, SaysThatSealsWereNotChecked) {
+  const std::string path = folder_ + "/sealed.lcmlog";
+  SmallMission::writeSealedLog(path);
+  const std::string said = shell("'" CONSOLE "' labels --log " + path + " 2>&1 >/dev/null </dev/null").output;
+  EXPECT_NE(said.find(path + ": seals: "), std::string::npos) << said;
+  EXPECT_NE(said.find("NOT checked: give --key"), std::string::npos) << said;
+  EXPECT_EQ(shell("'" CONSOLE "' labels" + log() + " 2>&1 >/dev/null </dev/null").output, "");
+}
+
 TEST_F(QuestionsTest, ExportsGeoJsonOfAllLabels) {
   const std::string out = folder_ + "/map.geojson";
   EXPECT_EQ(console("export --format geojson --out " + out + run()).exit_code, 0);
