@@ -191,6 +191,27 @@ TEST(LaunchTest, KeepsWhatIsLeftOfAMissionThatDidNotEnd) {
   }
 }
 
+TEST(ConsoleTest, NamesTheWordThatIsNotKnownAndTheNearest) {
+  expectRefusal("lables", "unknown command lables; did you mean labels?");
+  expectRefusal("xyzzyplugh", "unknown command xyzzyplugh; --help lists them");
+  expectRefusal("library shwo", "unknown command shwo; did you mean show?");
+  expectRefusal("labels --rnu a", "unknown option --rnu; did you mean --run?");
+  expectRefusal("labels", "[--node,--run,--log] is required");
+}
+
+TEST(ConsoleTest, SaysWhichNumbersAreGood) {
+  expectRefusal("area 4 --run x --min-m2 -5", "--min-m2: must be 0 or more, got -5\n");
+  expectRefusal("surprises --run x --most 0", "--most: must be more than 0, got 0\n");
+  expectRefusal("score --node x --robots many", "must be 0 or more, got many\n");
+}
+
+TEST(ConsoleTest, NamesTheFileThatIsNoLibrary) {
+  const std::string page = temporaryFolder() + "/a.html";
+  std::ofstream(page) << "<!doctype html>";
+  EXPECT_NE(console("library show " + page).output.find(page + " is no library: it should be JSON"),
+            std::string::npos);
+}
+
 TEST(LaunchTest, ReadsFlagsFromMissionToml) {
   const std::string folder = temporaryFolder();
   const std::string launch = "launch --out " + folder + "/run --config " + folder + "/mission.toml";
