@@ -118,8 +118,10 @@ void addEditCommands(CLI::App& app, Action& chosen) {
       add("undo", "take back what was decided",
           "Without EDIT the newest of whom is asked that is in force. An undo can be undone.\n\n"
           "  operator_console undo --node state\n"
-          "  operator_console undo OPERATOR/3 --run runs/a");
-  undo->add_option("edit", undone->which, "OPERATOR/3, as edits lists them");
+          "  operator_console undo OPERATOR/3 --node state\n"
+          "  operator_console undo CONSOLE/1 --run runs/a");
+  undo->add_option("edit", undone->which,
+                   "OPERATOR/3, as edits lists them; what was decided with --run or --log is CONSOLE's");
   act(undo, undone, [](const Judging& q) {
     Json question{{"edit", "undo"}};
     if (!q.which.empty()) question["which"] = q.which;

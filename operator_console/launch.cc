@@ -412,6 +412,8 @@ int Mission::run(bool url_was_given) {
     run.worst_window = watch_.worstWindow();
     std::fputs(finishRun(run).c_str(), stdout);
     mapping::writeFileAtomically(options_.out + "/summary.html", summaryHtml(readSummaryOf(options_.out)));
+    std::printf("map: %s/global_map.png; all on a page: %s/summary.html\n", options_.out.c_str(),
+                options_.out.c_str());
     if (lacking.empty()) return 0;
     spdlog::error("{} within {} s: {}",
                   run.converged ? "the recording is not whole" : "the nodes do not agree",

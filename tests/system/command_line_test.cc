@@ -212,6 +212,12 @@ TEST(ConsoleTest, NamesTheFileThatIsNoLibrary) {
             std::string::npos);
 }
 
+TEST(LaunchTest, HelpSaysWhatRobotsZeroMeansAndAllThatAPlanCanSay) {
+  const std::string help = console("launch --help").output;
+  EXPECT_NE(help.find("0 (the default): 12"), std::string::npos);
+  EXPECT_NE(help.find("kill|restart|anew"), std::string::npos);
+}
+
 TEST(LaunchTest, ReadsFlagsFromMissionToml) {
   const std::string folder = temporaryFolder();
   const std::string launch = "launch --out " + folder + "/run --config " + folder + "/mission.toml";

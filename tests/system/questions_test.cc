@@ -297,6 +297,12 @@ TEST_F(QuestionsTest, SaysThatSealsWereNotChecked) {
   EXPECT_EQ(shell("'" CONSOLE "' labels" + log() + " 2>&1 >/dev/null </dev/null").output, "");
 }
 
+TEST_F(QuestionsTest, ALegendIsCountedInLabels) {
+  const std::string out = folder_ + "/legend.csv";
+  EXPECT_EQ(console("export --format labels --out " + out + run()).output,
+            "3 labels written to " + out + "\n");
+}
+
 TEST_F(QuestionsTest, ExportsGeoJsonOfAllLabels) {
   const std::string out = folder_ + "/map.geojson";
   EXPECT_EQ(console("export --format geojson --out " + out + run()).exit_code, 0);
