@@ -8,6 +8,7 @@
 #include "operator_console/asking.h"
 #include "operator_console/command.h"
 #include "shoal/mapping/area_answer.h"
+#include "shoal/number_check.h"
 
 namespace shoal::console {
 namespace {
@@ -67,7 +68,7 @@ void addAreaCommand(CLI::App& app, Action& chosen) {
   command->add_option("label", q->label, "number of the label, or its name")->required();
   addWhere(*command, q->asking);
   command->add_option("--min-m2", q->min_m2, "leave out patches below this many square metres")
-      ->check(CLI::NonNegativeNumber)
+      ->check(zeroOrMore)
       ->capture_default_str();
   command->add_option("--since", q->since,
                       "only cells seen at or after this mission time: seconds, or 10:20, or 1:10:20");

@@ -17,6 +17,7 @@
 #include "operator_console/command.h"
 #include "operator_console/stop_signal.h"
 #include "shoal/mapping/atomic_file.h"
+#include "shoal/number_check.h"
 
 namespace shoal::console {
 namespace {
@@ -141,7 +142,7 @@ void addAskCommand(CLI::App& app, Action& chosen) {
   command->add_flag("--dry-run", wish->dry_run, "only say what it would cost; sends nothing");
   command
       ->add_option("--wait", wish->wait_s, "seconds of wall time to wait for it; exit 1 when it has not come")
-      ->check(CLI::NonNegativeNumber);
+      ->check(zeroOrMore);
   command->add_option("--out", wish->out, "PNG file for the picture as it is then held");
   command->add_flag("--json", wish->json, "answer in JSON");
   command->footer(

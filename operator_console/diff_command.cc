@@ -49,7 +49,10 @@ int diff(const DiffQuestion& q) {
   }
   const Where where = whereOf(q.asking);
   const auto viewAt = [log = recordingOf(where), matcher = matcherOf(where), key = where.key](double time_s) {
-    return readRecording(log, matcher, {}, world::Timestamp{std::llround(time_s * 1e6)}, key).state.view();
+    const RecordedMission then =
+        readRecording(log, matcher, {}, world::Timestamp{std::llround(time_s * 1e6)}, key);
+    warnOfSeals(log, then.seals);
+    return then.state.view();
   };
   const Json d = mapping::diffAnswer(viewAt(before_s), before_s, viewAt(after_s), after_s);
   if (q.asking.json) {

@@ -38,7 +38,7 @@ int edits(const Judging& q) {
   if (a["edits"].empty()) fmt::print("nothing has been decided\n");
   for (const Json& e : a["edits"]) {
     fmt::print("{:<14} {:>9.1f} s  {:<10} {}\n", e["id"].get<std::string>(), e["time_s"].get<double>(),
-               e["standing"].get<std::string>(), shortened(e["says"].get<std::string>(), 42));
+               e["standing"].get<std::string>(), lastColumn(e["says"].get<std::string>(), 42));
   }
   return 0;
 }
@@ -58,7 +58,7 @@ int events(const Judging& q, const std::string& kind) {
   if (a["events"].empty()) fmt::print("nothing happened\n");
   for (const Json& e : a["events"]) {
     fmt::print("{:>9.1f} s  {:<8} {} {}\n", e["at_s"].get<double>(), e["kind"].get<std::string>(),
-               shortened(e["node"].get<std::string>(), 17), shortened(e["says"].get<std::string>(), 39));
+               column(e["node"].get<std::string>(), 17), lastColumn(e["says"].get<std::string>(), 39));
   }
   return 0;
 }
@@ -118,8 +118,10 @@ void addEditCommands(CLI::App& app, Action& chosen) {
       add("undo", "take back what was decided",
           "Without EDIT the newest of whom is asked that is in force. An undo can be undone.\n\n"
           "  operator_console undo --node state\n"
-          "  operator_console undo OPERATOR/3 --run runs/a");
-  undo->add_option("edit", undone->which, "OPERATOR/3, as edits lists them");
+          "  operator_console undo OPERATOR/3 --node state\n"
+          "  operator_console undo CONSOLE/1 --run runs/a");
+  undo->add_option("edit", undone->which,
+                   "OPERATOR/3, as edits lists them; what was decided with --run or --log is CONSOLE's");
   act(undo, undone, [](const Judging& q) {
     Json question{{"edit", "undo"}};
     if (!q.which.empty()) question["which"] = q.which;

@@ -113,7 +113,7 @@ Export exported(const Where& where, const std::string& format, const std::string
   if (origin) earth.emplace(*origin);
   const GeoFrame* frame = earth ? &*earth : nullptr;
   const mapping::MissionView view = viewOf(where);
-  return {filesOf(where, view, format, file, frame), view.map.cells.size()};
+  return {filesOf(where, view, format, file, frame), view.map.cells.size(), view.map.labels.size()};
 }
 
 }  // namespace shoal::console

@@ -28,7 +28,8 @@ const ExportFormat& exportFormat(const std::string& name);
 /// What an export wrote.
 struct Export {
   std::vector<ExportedFile> files;
-  size_t cells = 0;  ///< of the map
+  size_t cells = 0;   ///< of the map
+  size_t labels = 0;  ///< of its legend
 };
 
 /// The map of a mission as files, the one that was asked for first, called `file`; those beside it are called

@@ -25,6 +25,7 @@
 #include "operator_console/mission_watch.h"
 #include "operator_console/progress.h"
 #include "operator_console/recording_repair.h"
+#include "operator_console/remains.h"
 #include "operator_console/stop_signal.h"
 #include "operator_console/summary.h"
 #include "operator_console/supervisor.h"
@@ -73,21 +74,28 @@ int32_t newMissionId() {
   return static_cast<int32_t>(hashCombine(now, static_cast<uint64_t>(getpid())) % 0x7fffffffu) + 1;
 }
 
-void refuseFinishedMission(const LaunchOptions& options) {
-  const fs::path out = options.out;
-  if (fs::exists(out / "summary.json") && !options.overwrite) {
-    throw std::invalid_argument("--out " + options.out +
-                                " holds a finished mission; name another folder, or add --overwrite");
+void refuseOldMission(const LaunchOptions& options) {
+  if (options.overwrite) return;
+  const char* const choice = "; name another folder, or add --overwrite";
+  if (fs::exists(fs::path(options.out) / "summary.json")) {
+    throw std::invalid_argument("--out " + options.out + " holds a finished mission" + choice);
   }
+  const auto remains = remainsOf(options.out);
+  if (remains.empty()) return;
+  const std::string ask = howToAsk(options.out);
+  throw std::invalid_argument("--out " + options.out + " holds what is left of a mission that did not end (" +
+                              joined(remains) + ")" + (ask.empty() ? "" : ", which answers: " + ask) +
+                              choice);
 }
 
 // Makes the folder ready: without the files of a mission that was there before.
 void prepareFolder(const LaunchOptions& options) {
   const fs::path out = options.out;
-  if (fs::exists(out / "logs" / "OPERATOR.log")) {
+  if (fs::exists(out / "logs" / "OPERATOR.log") || !remainsOf(options.out).empty()) {
     for (const std::string_view name :
          {"robots", "single", "logs", "state", "global_map.csv", "global_map.png", "labels.csv",
-          "summary.json", "summary.html", "edits.json", "library.json", "mission.lcmlog"}) {
+          "summary.json", "summary.html", "edits.json", "library.json", "mission.lcmlog", "pictures",
+          "surprise.csv"}) {
       fs::remove_all(out / name);
     }
   }
@@ -404,6 +412,8 @@ int Mission::run(bool url_was_given) {
     run.worst_window = watch_.worstWindow();
     std::fputs(finishRun(run).c_str(), stdout);
     mapping::writeFileAtomically(options_.out + "/summary.html", summaryHtml(readSummaryOf(options_.out)));
+    std::printf("map: %s/global_map.png; all on a page: %s/summary.html\n", options_.out.c_str(),
+                options_.out.c_str());
     if (lacking.empty()) return 0;
     spdlog::error("{} within {} s: {}",
                   run.converged ? "the recording is not whole" : "the nodes do not agree",
@@ -428,7 +438,7 @@ int launch(LaunchOptions options) {
   check(options);
   options = completed(std::move(options));
   options.out = fs::absolute(options.out).lexically_normal();
-  refuseFinishedMission(options);
+  refuseOldMission(options);
   if (options.mission == 0) options.mission = newMissionId();
   const bool url_was_given = !options.lcm_url.empty();
   if (!url_was_given) options.lcm_url = comms::chooseFreeUrl(static_cast<uint64_t>(options.mission));

@@ -24,7 +24,8 @@ void addLaunchCommand(CLI::App& app, Action& chosen) {
   LaunchOptions& o = flags->launch;
   command->add_option("--world", o.world,
                       "reef:sparse, reef:varied, reef:tuning, a world folder, or a recording");
-  command->add_option("--robots", o.num_robots, "how many fly (default: 12, or as many as were recorded)");
+  command->add_option("--robots", o.num_robots,
+                      "how many fly; 0 (the default): 12, or as many as were recorded");
   command
       ->add_option("--observations", o.observations,
                    "images per robot, 0 = as many as cover its share, or all that were recorded")
@@ -86,7 +87,8 @@ void addLaunchCommand(CLI::App& app, Action& chosen) {
   command->add_option("--depth-holes", o.sensors.depth_holes, "part of the depth that is missing")
       ->capture_default_str();
   command->add_option("--out", o.out, "folder for the mission's files");
-  command->add_flag("--overwrite", o.overwrite, "replace a finished mission in --out");
+  command->add_flag("--overwrite", o.overwrite,
+                    "replace a mission in --out, ended or interrupted, with all its files");
   command->add_flag("--single", o.single, "also fly one robot over the whole area, into single/");
   command->add_flag("--record", o.record, "record all messages with lcm-logger, into mission.lcmlog");
   command->add_option("--lcm-url", o.lcm_url, "multicast group (default: a free port of this host)")
@@ -97,7 +99,7 @@ void addLaunchCommand(CLI::App& app, Action& chosen) {
                    "wall seconds without any change after which a landed team is given up")
       ->capture_default_str();
   command->add_option("--kill-plan", o.kill_plan,
-                      "robots that crash and begin anew: lines `t_s ROBOT kill|restart`");
+                      "robots that crash and begin anew: lines `t_s ROBOT kill|restart|anew`");
   command->footer(
       "  operator_console launch --world reef:varied --robots 12 --observations 60 --out runs/a\n"
       "  operator_console launch --world bay --link acoustic --budget 200 --record --out runs/b");

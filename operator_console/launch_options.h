@@ -31,7 +31,7 @@ struct LaunchOptions {
   world::SensorOptions sensors;
   std::string camera;             ///< camera.json that says how the camera sees; empty = as usual there
   std::string out;                ///< folder
-  bool overwrite = false;         ///< a finished mission in `out` may go
+  bool overwrite = false;         ///< a mission in `out`, ended or not, may go
   bool single = false;            ///< fly one robot over the whole area too
   bool record = false;            ///< mission.lcmlog
   std::string lcm_url;            ///< empty = on a free port

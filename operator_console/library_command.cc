@@ -2,6 +2,7 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include <spdlog/fmt/fmt.h>
 
@@ -36,6 +37,14 @@ int show(const mapping::Library& library, const std::string& file, bool json) {
     fmt::print("  {} {:>10} words seen, {:>6} kinds of word\n", shortened(t.name, 30), t.weight,
                t.words.size());
   return 0;
+}
+
+mapping::Library readLibrary(const std::string& file) {
+  const std::string text = mapping::readFile(file);
+  if (!Json::accept(text)) {
+    throw std::runtime_error(file + " is no library: it should be JSON, as `library save` writes it");
+  }
+  return mapping::parseLibrary(text, file);
 }
 
 int save(const Keeping& keeping) {
@@ -73,10 +82,7 @@ void addLibraryCommand(CLI::App& app, Action& chosen) {
   showing->add_flag("--json", shown->asking.json, "answer in JSON");
   showing->footer("  operator_console library show reef.library");
   showing->callback([shown, &chosen] {
-    chosen = [shown] {
-      return show(mapping::parseLibrary(mapping::readFile(shown->file), shown->file), shown->file,
-                  shown->asking.json);
-    };
+    chosen = [shown] { return show(readLibrary(shown->file), shown->file, shown->asking.json); };
   });
 }
 

@@ -11,6 +11,7 @@
 #include "fusion_node/process.h"
 #include "operator_console/command.h"
 #include "operator_console/config_file.h"
+#include "operator_console/mistake.h"
 #include "shoal/version.h"
 
 int main(int argc, char** argv) {
@@ -54,6 +55,11 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
+    const bool lacks = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
+    if (const std::string mistake = lacks ? console::mistakeIn(app) : ""; !mistake.empty()) {
+      std::fprintf(stderr, "operator_console: %s\n", mistake.c_str());
+      return 2;
+    }
     return app.exit(error) == 0 ? 0 : 2;
   }
   try {

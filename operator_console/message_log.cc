@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "operator_console/message_log.h"
 
+#include <mutex>
 #include <nlohmann/json.hpp>
 
-#include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
 
 #include "fusion_node/authentication.h"
 
@@ -16,6 +17,16 @@ nlohmann::ordered_json SealCounts::json() const {
 std::string SealCounts::text() const {
   if (checked) return fmt::format("seals: {} right, {} refused\n", sealed, refused);
   return sealed == 0 ? "" : fmt::format("seals: {} messages have one, NOT checked: give --key\n", sealed);
+}
+
+void warnOfSeals(const std::string& path, const SealCounts& seals) {
+  static std::mutex mutex;
+  static std::set<std::string> told;  // guarded by mutex
+  std::string text = seals.checked ? "" : seals.text();
+  if (text.empty()) return;
+  text.pop_back();
+  const std::scoped_lock lock(mutex);
+  if (told.insert(path).second) spdlog::warn("{}: {}", path, text);
 }
 
 MessageLog::MessageLog(const std::string& path, const std::string& key_file)

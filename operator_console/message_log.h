@@ -25,6 +25,9 @@ struct SealCounts {
   std::string text() const;  ///< a line, or nothing when there is nothing to say
 };
 
+/// Says in the log, once of each recording, when its seals were removed unseen.
+void warnOfSeals(const std::string& path, const SealCounts& seals);
+
 /// Reads the messages of a recording, or of what a node remembers (MissionFile), without their seals. With a
 /// key, messages on our channels that it did not seal are left out, and those that somebody said again.
 class MessageLog {

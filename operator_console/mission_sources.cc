@@ -12,6 +12,7 @@
 
 #include "fusion_node/query_server.h"
 #include "operator_console/recorded_mission.h"
+#include "operator_console/remains.h"
 #include "shoal/eval/evaluation.h"
 #include "shoal/mapping/atomic_file.h"
 #include "shoal/mapping/belief_pieces.h"
@@ -50,7 +51,9 @@ mapping::MissionView viewOfNode(const std::string& state_dir) {
 Json readSummary(const std::string& dir) {
   const std::string path = dir + "/summary.json";
   if (!std::filesystem::exists(path)) {
-    throw std::runtime_error(dir + " is not a finished run: it has no summary.json");
+    const std::string ask = howToAsk(dir);
+    throw std::runtime_error(dir + " is not a finished run: it has no summary.json" +
+                             (ask.empty() ? "" : "; what is left of it answers: " + ask));
   }
   try {
     return Json::parse(mapping::readFile(path));
@@ -186,6 +189,7 @@ Json askRun(const Where& where, const Json& question) {
 // A recording, and what was decided since.
 RecordedMission recordingWithEdits(const Where& where) {
   RecordedMission recorded = readRecording(where.log, where.matcher, {}, {}, where.key);
+  warnOfSeals(where.log, recorded.seals);
   for (const mapping::Edit& edit : mapping::readEdits(editsPathOf(where), recorded.mission)) {
     recorded.state.apply(mapping::pieceOf(edit));
   }

@@ -7,6 +7,7 @@
 
 #include "operator_console/asking.h"
 #include "operator_console/command.h"
+#include "operator_console/silence.h"
 #include "operator_console/terminal.h"
 
 namespace shoal::console {
@@ -29,8 +30,10 @@ std::string agreementText(const std::string& agreement) {
 void printNode(const Json& a) {
   const Json& n = a["node"];
   const bool is_robot = n["phase"] != "node";
+  const std::string phase = n["phase"];
   fmt::print("{}: {}, heard at {:.1f} s, {:.1f} s ago\n", n["name"].get<std::string>(),
-             n["phase"].get<std::string>(), n["heard_s"].get<double>(), a["silent_s"].get<double>());
+             n["silent"].get<bool>() ? alarming("silent") + ", last " + phase : phase,
+             n["heard_s"].get<double>(), a["silent_s"].get<double>());
   if (is_robot) {
     fmt::print("image {} of {}, at ({:.1f}, {:.1f}, {:.1f}) m\n", n["observation"].get<int>() + 1,
                n["num_observations"].get<int>(), n["position_m"][0].get<double>(),
@@ -55,7 +58,10 @@ void printNode(const Json& a) {
 }
 
 int node(const NodeQuestion& q) {
-  const Json a = answerTo(q.asking, {{"query", "node"}, {"node", q.name}});
+  Json a = answerTo(q.asking, {{"query", "node"}, {"node", q.name}});
+  Json nodes = Json::array({a["node"]});
+  addSilence(q.asking, nodes, a["now_s"]);
+  a["node"] = nodes[0];
   if (q.asking.json) {
     std::cout << a.dump(2) << '\n';
   } else {

@@ -72,6 +72,9 @@ std::vector<std::string> progressLines(const MissionProgress& progress, size_t w
   return lines;
 }
 
+// To the line's beginning, for a typed ^C stands there; up, and away with all below.
+std::string erasing(size_t lines) { return lines > 0 ? fmt::format("\r\033[{}A\033[J", lines) : ""; }
+
 TerminalBlock::TerminalBlock() : is_terminal_(isatty(STDERR_FILENO) == 1) {}
 
 void TerminalBlock::draw(const MissionProgress& progress) {
@@ -86,7 +89,7 @@ void TerminalBlock::draw(const MissionProgress& progress) {
 }
 
 void TerminalBlock::clear() {
-  if (drawn_ > 0) std::fprintf(stderr, "\033[%zuA\033[J", drawn_);  // up, and away with all below
+  std::fputs(erasing(drawn_).c_str(), stderr);
   drawn_ = 0;
 }
 

@@ -24,6 +24,9 @@ struct MissionProgress {
 /// as they fit, left out when they do not, and one bar for all with the time it will take. Pure.
 std::vector<std::string> progressLines(const MissionProgress& progress, size_t width, size_t height);
 
+/// What takes the last `lines` lines away from a terminal, wherever in the line below them it stands.
+std::string erasing(size_t lines);
+
 /// Draws lines over those drawn before, on stderr. Does nothing when stderr is no terminal.
 class TerminalBlock {
  public:

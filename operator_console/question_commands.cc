@@ -111,7 +111,9 @@ void exportMap(Question& q) {
     std::cout << Json{{"format", q.format}, {"file", q.out}, {"files", files}, {"cells", done.cells}}.dump(2)
               << '\n';
   } else {
-    fmt::print("{} cells written to {}\n", done.cells, joined(files, ", "));
+    const bool is_legend = q.format == "labels";
+    fmt::print("{} {} written to {}\n", is_legend ? done.labels : done.cells, is_legend ? "labels" : "cells",
+               joined(files, ", "));
   }
 }
 

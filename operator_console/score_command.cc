@@ -13,6 +13,7 @@
 #include "operator_console/named_cells.h"
 #include "operator_console/terminal.h"
 #include "shoal/mapping/atomic_file.h"
+#include "shoal/number_check.h"
 #include "shoal/rounded.h"
 
 namespace shoal::console {
@@ -112,9 +113,9 @@ void addScoreCommand(CLI::App& app, Action& chosen) {
   command
       ->add_option("--robots", flags->hint.robots,
                    "for --node and --log, when not all of the team were heard")
-      ->check(CLI::NonNegativeNumber);
+      ->check(zeroOrMore);
   command->add_option("--observations", flags->hint.observations, "for --node and --log: images per robot")
-      ->check(CLI::NonNegativeNumber);
+      ->check(zeroOrMore);
   command->footer(
       "evaluate matches a run anew with every matcher, without edits; score takes the labels as they are.\n"
       "Where nobody knows the truth, name some cells: 100 tell the AMI to about .15 either way, 200 to .1,\n"

@@ -131,13 +131,16 @@ Json Spy::json(double now_s) const {
   return answer;
 }
 
-std::string Spy::text(double now_s) const {
+std::string Spy::text(double now_s, bool shortens) const {
   const Json a = json(now_s);
+  const auto fitted = [shortens](const std::string& name, size_t width) {
+    return shortens ? shortened(name, width) : fmt::format("{:<{}}", name, width);
+  };
   std::string text = fmt::format("{:<30} {:<10} {:>8} {:>7} {:>8} {:>6} {:>4}\n", "channel", "type",
                                  "messages", "Hz", "B/s", "ago s", "bad");
   for (const Json& c : a["channels"]) {
     text += fmt::format("{} {:<10} {:>8} {:>7.1f} {:>8.0f} {:>6.1f} {:>4}\n",
-                        shortened(c["channel"].get<std::string>(), 30), c["type"].get<std::string>(),
+                        fitted(c["channel"].get<std::string>(), 30), c["type"].get<std::string>(),
                         c["messages"].get<int64_t>(), c["hz"].get<double>(), c["bytes_per_s"].get<double>(),
                         c["ago_s"].get<double>(), c["refused"].get<int64_t>());
   }
@@ -156,12 +159,12 @@ std::string Spy::text(double now_s) const {
   for (const Json& c : a["channels"]) {
     if (!c.contains("last")) continue;
     Json last = c["last"];
-    shorten(last);
+    if (shortens) shorten(last);
     text += "\n" + c["channel"].get<std::string>() + "\n";
     for (const auto& [key, value] : last.items()) {
       if (key == "channel") continue;
       std::string shown = value.is_string() ? value.get<std::string>() : value.dump();
-      if (shown.size() > kFieldColumns) shown = shortened(shown, kFieldColumns);
+      if (shortens && shown.size() > kFieldColumns) shown = shortened(shown, kFieldColumns);
       text += fmt::format("  {:<18} {}\n", key, shown);
     }
   }

@@ -36,7 +36,7 @@ class Spy {
   nlohmann::ordered_json json(double now_s) const;
 
   /// The same as tables of at most 80 columns, decoded messages below.
-  std::string text(double now_s) const;
+  std::string text(double now_s, bool shortens = true) const;
 
  private:
   struct Channel {

@@ -28,7 +28,7 @@ bool show(const SpyFlags& flags, const Spy& spy, double now_s) {
     std::cout << spy.json(now_s).dump(flags.once ? 2 : -1) << '\n';
   } else {
     if (!flags.once) clearTerminal();
-    std::cout << spy.text(now_s);
+    std::cout << spy.text(now_s, isOnTerminal());
   }
   return static_cast<bool>(std::cout.flush());
 }

@@ -11,6 +11,7 @@
 #include "fusion_node/process.h"
 #include "operator_console/asking.h"
 #include "operator_console/command.h"
+#include "operator_console/silence.h"
 #include "operator_console/terminal.h"
 
 namespace shoal::console {
@@ -35,8 +36,9 @@ std::string timeToClear(const Json& n) {
   return n["budget"].get<int64_t>() == 0 ? "-" : fmt::format("{:.0f}", n["clear_s"].get<double>());
 }
 
-// What of it arrives, in percent.
+// What of it arrives, in percent; of who is silent, nothing does.
 std::string linkQuality(const Json& n) {
+  if (n["silent"].get<bool>()) return "-";
   const auto share = n.find("heard_share");
   return share == n.end() || share->is_null() ? "-" : fmt::format("{:.0f}", 100 * share->get<double>());
 }
@@ -47,8 +49,10 @@ void printRow(const Json& n) {
       fmt::format("{}/{}", n["observation"].get<int>() + 1, n["num_observations"].get<int>());
   const std::string told = !flies ? "-" : n["heard_whole"].get<bool>() ? "all" : "part";
   const std::string agreement = n["agreement"];
-  fmt::print("{:<8} {:<7} {:>7.1f} {:>7} {:>6} {:>6} {:>4} {:>4} {:>5} {:>5} {:<4} {}\n",
-             n["name"].get<std::string>(), n["phase"].get<std::string>(), n["heard_s"].get<double>(),
+  const bool is_silent = n["silent"].get<bool>();
+  const std::string phase = fmt::format("{:<9}", is_silent ? "silent" : n["phase"].get<std::string>());
+  fmt::print("{:<8} {} {:>5.0f} {:>7} {:>6} {:>6} {:>4} {:>4} {:>5} {:>5} {:<4} {}\n",
+             n["name"].get<std::string>(), is_silent ? alarming(phase) : phase, n["ago_s"].get<double>(),
              flies ? images : "-", n["topics"].get<int>(), n["cells"].get<int>(), linkQuality(n),
              budgetUsed(n), n["queue_bytes"].get<int>(), timeToClear(n), told,
              agreement == "none"    ? "-"
@@ -92,8 +96,9 @@ void print(const Json& a) {
   if (const double silent_s = a.value("silent_s", 0.0); silent_s > 5) {
     spdlog::warn("the node has heard nobody else for {:.0f} s", silent_s);
   }
-  fmt::print("mission {}: {} cells, {} labels, cells of {} m\n", a["mission_id"].get<int64_t>(),
-             a["cells"].get<int64_t>(), a["labels"].get<int64_t>(), a["cell_size_m"].get<double>());
+  fmt::print("mission {} at {:.1f} s: {} cells, {} labels, cells of {} m\n", a["mission_id"].get<int64_t>(),
+             latestHeard(a["nodes"]), a["cells"].get<int64_t>(), a["labels"].get<int64_t>(),
+             a["cell_size_m"].get<double>());
   fmt::print("state {}, map {}\n", a["digest"]["state"].get<std::string>(),
              a["digest"]["map"].get<std::string>());
   if (const auto library = a.find("library"); library != a.end()) {
@@ -103,8 +108,8 @@ void print(const Json& a) {
                    ? alarming(", NOT THE ONE THIS NODE WAS GIVEN: " + (*library)["given"].get<std::string>())
                    : "");
   }
-  fmt::print("{:<8} {:<7} {:>7} {:>7} {:>6} {:>6} {:>4} {:>4} {:>5} {:>5} {:<4} {}\n", "node", "phase",
-             "heard s", "images", "topics", "cells", "link", "used", "queue", "clear", "told", "map");
+  fmt::print("{:<8} {:<9} {:>5} {:>7} {:>6} {:>6} {:>4} {:>4} {:>5} {:>5} {:<4} {}\n", "node", "phase",
+             "ago s", "images", "topics", "cells", "link", "used", "queue", "clear", "told", "map");
   for (const Json& n : a["nodes"]) printRow(n);
   printRefused(a);
   for (const Json& m : a["mixed"])
@@ -119,7 +124,8 @@ void print(const Json& a) {
 int status(const StatusQuestion& q) {
   if (q.watch) fusion_node::catchStopSignals();
   do {
-    const Json a = answerTo(q.asking, {{"query", "status"}});
+    Json a = answerTo(q.asking, {{"query", "status"}});
+    addSilence(q.asking, a["nodes"], latestHeard(a["nodes"]));
     if (q.watch) clearTerminal();
     if (q.asking.json) {
       std::cout << a.dump(q.watch ? -1 : 2) << '\n';
@@ -151,7 +157,10 @@ void addStatusCommand(CLI::App& app, Action& chosen) {
       ->check(CLI::Range(0.1, 3600.0))
       ->capture_default_str();
   command->footer(
-      "link: percent of the bytes a node sent in its last minute that arrived here. used: bytes sent of\n"
+      "silent: lost, as events tells it, and not heard since; of a finished mission and of a recording only\n"
+      "robots that had not landed. ago: mission time since a node was last heard. link: percent of the "
+      "bytes\n"
+      "a node sent in its last minute that arrived here. used: bytes sent of\n"
       "what the budget allowed so far. queue: bytes that wait. clear: seconds until they are said, if\n"
       "nothing new comes. refused: messages not understood, or too many at once.\n"
       "told: whether all that a robot has to say was heard. map: the same as this one, made of another\n"

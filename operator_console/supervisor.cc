@@ -56,7 +56,8 @@ class File {
 };
 
 bool canRun(const std::string& path) {
-  return std::filesystem::is_regular_file(path) && access(path.c_str(), X_OK) == 0;
+  std::error_code unreadable;  // one bad folder on PATH hides no other
+  return std::filesystem::is_regular_file(path, unreadable) && access(path.c_str(), X_OK) == 0;
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "operator_console/asking.h"
 #include "operator_console/command.h"
 #include "operator_console/terminal.h"
+#include "shoal/number_check.h"
 
 namespace shoal::console {
 namespace {
@@ -60,11 +61,9 @@ void addSurprisesCommand(CLI::App& app, Action& chosen) {
   const auto q = std::make_shared<SurprisesQuestion>();
   addWhere(*command, q->asking);
   command->add_option("--least", q->least, "leave out cells that surprised less")
-      ->check(CLI::NonNegativeNumber)
+      ->check(zeroOrMore)
       ->capture_default_str();
-  command->add_option("--most", q->most, "rows of the table")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+  command->add_option("--most", q->most, "rows of the table")->check(moreThanZero)->capture_default_str();
   command->add_flag("--csv", q->csv, "every cell in CSV")->excludes(command->get_option("--json"));
   command->footer(
       "How badly a robot's labels explained a cell when it came to it, beside all cells that it had seen "

@@ -33,6 +33,18 @@ std::string shortened(const std::string& text, size_t width) {
   return text.substr(0, end) + "~";
 }
 
+std::string column(const std::string& text, size_t width) {
+  if (isOnTerminal()) return shortened(text, width);
+  const std::string fitted = shortened(text, width);
+  return fitted.ends_with('~') ? text : fitted;
+}
+
+std::string lastColumn(const std::string& text, size_t width) {
+  std::string last = column(text, width);
+  last.erase(last.find_last_not_of(' ') + 1);
+  return last;
+}
+
 void clearTerminal() {
   if (isOnTerminal()) std::fputs("\033[H\033[2J", stdout);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <fstream>
 #include <string>
@@ -10,6 +11,7 @@
 
 #include "fusion_node/mission_state.h"
 #include "shoal/comms/channels.h"
+#include "shoal/comms/seal.h"
 #include "shoal/mapping/atomic_file.h"
 #include "shoal/mapping/belief_files.h"
 #include "shoal/mapping/belief_pieces.h"
@@ -110,16 +112,23 @@ class SmallMission {
     mapping::writeFileAtomically(folder + "/mission.lcmlog", log());
   }
 
+  /// The recording alone, of a team with a key.
+  static void writeSealedLog(const std::string& path) {
+    const comms::SealKey key(std::array<uint8_t, comms::SealKey::kBytes>{});
+    mapping::writeFileAtomically(path, log(&key));
+  }
+
  private:
   // As lcm-logger writes it: magic, number, wall time, lengths, channel, payload; big-endian.
-  static std::string log() {
+  static std::string log(const comms::SealKey* key = nullptr) {
     std::string log;
     const auto add = [&log](uint64_t value, int bytes) {
       for (int shift = 8 * (bytes - 1); shift >= 0; shift -= 8)
         log += static_cast<char>(value >> shift & 0xff);
     };
     uint64_t event = 0;
-    for (const comms::Packet& packet : packets()) {
+    for (comms::Packet& packet : packets()) {
+      if (key != nullptr) comms::addSeal(*key, {1, static_cast<uint32_t>(event)}, packet);
       add(0xEDA1DA01, 4);
       add(event, 8);
       add(1'000'000 + event++, 8);

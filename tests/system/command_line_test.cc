@@ -184,6 +184,57 @@ TEST(LaunchTest, KeepsAFinishedMission) {
   EXPECT_TRUE(std::filesystem::exists(folder + "/summary.json"));
 }
 
+// What a crash left: the recording, decisions, what the node remembers.
+TEST(LaunchTest, KeepsWhatIsLeftOfAMissionThatDidNotEnd) {
+  const std::string launch = "launch --world reef:sparse --observations 1 --out ";
+  for (const std::string name : {"mission.lcmlog", "edits.json", "state/mission-5.sqlite"}) {
+    const std::string folder = temporaryFolder();
+    std::filesystem::create_directories(folder + "/state");
+    std::filesystem::create_directories(folder + "/logs");
+    std::ofstream(folder + "/logs/OPERATOR.log") << "killed\n";
+    std::ofstream(folder + "/" + name) << "x";
+    const std::string ask = "labels --log " + folder + "/" + name;
+    expectRefusal(launch + folder, "a mission that did not end (" + name + ")");
+    expectRefusal(launch + folder, "add --overwrite");
+    if (name != "edits.json") {
+      expectRefusal(launch + folder, ask);
+      EXPECT_NE(console("labels --run " + folder)
+                    .output.find("it has no summary.json; what is left of it "
+                                 "answers: operator_console " +
+                                 ask),
+                std::string::npos);
+    }
+    EXPECT_TRUE(std::filesystem::exists(folder + "/" + name));
+  }
+}
+
+TEST(ConsoleTest, NamesTheWordThatIsNotKnownAndTheNearest) {
+  expectRefusal("lables", "unknown command lables; did you mean labels?");
+  expectRefusal("xyzzyplugh", "unknown command xyzzyplugh; --help lists them");
+  expectRefusal("library shwo", "unknown command shwo; did you mean show?");
+  expectRefusal("labels --rnu a", "unknown option --rnu; did you mean --run?");
+  expectRefusal("labels", "[--node,--run,--log] is required");
+}
+
+TEST(ConsoleTest, SaysWhichNumbersAreGood) {
+  expectRefusal("area 4 --run x --min-m2 -5", "--min-m2: must be 0 or more, got -5\n");
+  expectRefusal("surprises --run x --most 0", "--most: must be more than 0, got 0\n");
+  expectRefusal("score --node x --robots many", "must be 0 or more, got many\n");
+}
+
+TEST(ConsoleTest, NamesTheFileThatIsNoLibrary) {
+  const std::string page = temporaryFolder() + "/a.html";
+  std::ofstream(page) << "<!doctype html>";
+  EXPECT_NE(console("library show " + page).output.find(page + " is no library: it should be JSON"),
+            std::string::npos);
+}
+
+TEST(LaunchTest, HelpSaysWhatRobotsZeroMeansAndAllThatAPlanCanSay) {
+  const std::string help = console("launch --help").output;
+  EXPECT_NE(help.find("0 (the default): 12"), std::string::npos);
+  EXPECT_NE(help.find("kill|restart|anew"), std::string::npos);
+}
+
 TEST(LaunchTest, ReadsFlagsFromMissionToml) {
   const std::string folder = temporaryFolder();
   const std::string launch = "launch --out " + folder + "/run --config " + folder + "/mission.toml";

@@ -233,9 +233,19 @@ class Mission(unittest.TestCase):
             self.assertEqual(read(os.path.join(once, path)), read(os.path.join(self.a, path)))
         self.assertNotEqual(read(os.path.join(once, "global_map.csv")), read(os.path.join(self.a, "global_map.csv")))
 
-    def test_another_seed_gives_another_map(self):
+    def test_another_seed_gives_another_map_and_nothing_is_left_of_the_old(self):
         c = os.path.join(self.top, "c")
-        run(CONSOLE, "launch", "--world", "reef:tuning", *SIZE[:-1], "8", "--out", c)
+        old = ["logs/OPERATOR.log", "mission.lcmlog", "pictures/99.png", "surprise.csv"]
+        for path in old:
+            os.makedirs(os.path.dirname(os.path.join(c, path)), exist_ok=True)
+            with open(os.path.join(c, path), "w", encoding="utf-8") as file:
+                file.write("old")
+        again = [CONSOLE, "launch", "--world", "reef:tuning", *SIZE[:-1], "8", "--out", c]
+        self.assertIn("did not end (mission.lcmlog)", run(*again, expect=2).stderr)
+        self.assertIn(f"map: {c}/global_map.png", run(*again, "--overwrite").stdout)
+        for path in old:
+            if os.path.exists(os.path.join(c, path)):
+                self.assertNotEqual(read(os.path.join(c, path)), b"old", path)
         self.assertNotEqual(read(os.path.join(self.a, "global_map.csv")), read(os.path.join(c, "global_map.csv")))
 
     def test_evaluate_agrees_with_the_summary(self):

@@ -23,6 +23,11 @@ TEST(ProgressLinesTest, ShowEveryRobotAndOneBarWithTheTimeItWillTake) {
   EXPECT_EQ(lines[2].substr(0, 58), "[##########..............................]  25 %  10/40 fr");
 }
 
+TEST(TerminalBlockTest, IsErasedFromTheBeginningOfALine) {
+  EXPECT_EQ(erasing(3), "\r\033[3A\033[J");  // ^C may have moved the cursor
+  EXPECT_EQ(erasing(0), "");
+}
+
 TEST(ProgressLinesTest, TellTheTimeThatIsLeftFromTheShareThatIsDone) {
   std::map<std::string, wire::Heartbeat> nodes;
   nodes["R00"].observation = 4;

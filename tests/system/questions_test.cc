@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <mutex>
 #include <sstream>
 #include <string>
 #include <thread>
@@ -96,6 +97,71 @@ TEST_F(QuestionsTest, RunAndRecordingAndNodeAnswerAlike) {
     EXPECT_EQ(of_run, ask(question + " --node " + socket_folder)) << question;
   }
   expectExit(1, "area 99 --node " + socket_folder, "no label \"99\"; the largest are 4");
+}
+
+// R01 is not heard any more while R00 flies on; nobody is missed in what has ended.
+TEST_F(QuestionsTest, WhoIsLostIsSilent) {
+  fusion_node::MissionState state(SmallMission::kMission, matching::usualMatcher());
+  comms::Stats stats;
+  const auto hear = [&](const char* robot, int64_t at_s, wire::Phase phase) {
+    wire::Heartbeat h;
+    h.mission = SmallMission::kMission;
+    h.time = {at_s * SmallMission::kSecond};
+    h.phase = phase;
+    h.budget = 2000;
+    state.hear({comms::channelName(robot, "HEARTBEAT"), wire::encode(h)}, stats);
+  };
+  hear("R00", 10, wire::Phase::kFlying);
+  hear("R01", 10, wire::Phase::kFlying);
+  hear("R02", 10, wire::Phase::kLeaving);
+  const std::string folder = folder_ + "/lost", node = " --node " + folder;
+  std::mutex mutex;
+  fusion_node::QueryServer server(folder, [&](const Json& question) {
+    const std::scoped_lock lock(mutex);
+    return mapping::answer({state.view(), [&]() -> const mapping::BeliefStore& { return state.beliefs(); },
+                            state.matcher(), [&] { return state.events(); }},
+                           question);
+  });
+  std::jthread serving([&server](const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+      server.poll();
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  });
+  const auto pass = [&](double wall_s) {
+    const std::scoped_lock lock(mutex);
+    state.passTime(wall_s);
+    hear("R00", static_cast<int64_t>(wall_s) + 10, wire::Phase::kFlying);
+  };
+  const auto silent = [&] {
+    std::string names;
+    const Json answer = ask("status" + node);
+    for (const Json& n : answer["nodes"])
+      if (n["silent"] == true) names += n["name"].get<std::string>() + " ";
+    return names;
+  };
+  pass(9);
+  EXPECT_EQ(silent(), "");
+  pass(20);
+  EXPECT_EQ(silent(), "R01 ");
+  const Json lost = ask("status" + node)["nodes"][1];
+  EXPECT_EQ(lost["phase"], "flying");
+  EXPECT_EQ(lost["ago_s"], 20.0);
+  EXPECT_EQ(ask("node R01" + node)["node"], lost);
+  EXPECT_NE(console("status" + node).output.find("R01      silent       20 "), std::string::npos)
+      << console("status" + node).output;
+  EXPECT_NE(console("node R01" + node).output.find("R01: silent, last flying, heard at 10.0 s, 20.0 s ago"),
+            std::string::npos);
+  {
+    const std::scoped_lock lock(mutex);
+    hear("R01", 29, wire::Phase::kFlying);
+  }
+  EXPECT_EQ(silent(), "");
+  for (const std::string& where : {run(), log()}) {
+    const Json ended = ask("status" + where);
+    for (const Json& n : ended["nodes"]) EXPECT_EQ(n["silent"], false) << n;
+    EXPECT_EQ(ended["nodes"][0]["ago_s"], 20.0);
+  }
 }
 
 TEST_F(QuestionsTest, TablesFitEightyColumns) {
@@ -207,6 +273,34 @@ TEST_F(QuestionsTest, WatchingEndsWhenNobodyReads) {
     ASSERT_TRUE(std::getline(lines, line));
     EXPECT_EQ(Json::parse(line)["cells"], 4);
   }
+}
+
+// Lines are whole where no terminal ends them, and have no blanks at their ends.
+TEST_F(QuestionsTest, NothingIsCutInPipes) {
+  const std::string folder = folder_ + "/whole", run = " --run " + folder;
+  SmallMission::write(folder);
+  const std::string name = "a very long name for a label, longer than any table is wide";
+  ask("name 4 \"" + name + "\"" + run);
+  for (const std::string question : {"edits", "events"}) {
+    const std::string said = console(question + run).output;
+    EXPECT_NE(said.find(name), std::string::npos) << said;
+    EXPECT_EQ(said.find(" \n"), std::string::npos) << said;
+  }
+}
+
+TEST_F(QuestionsTest, SaysThatSealsWereNotChecked) {
+  const std::string path = folder_ + "/sealed.lcmlog";
+  SmallMission::writeSealedLog(path);
+  const std::string said = shell("'" CONSOLE "' labels --log " + path + " 2>&1 >/dev/null </dev/null").output;
+  EXPECT_NE(said.find(path + ": seals: "), std::string::npos) << said;
+  EXPECT_NE(said.find("NOT checked: give --key"), std::string::npos) << said;
+  EXPECT_EQ(shell("'" CONSOLE "' labels" + log() + " 2>&1 >/dev/null </dev/null").output, "");
+}
+
+TEST_F(QuestionsTest, ALegendIsCountedInLabels) {
+  const std::string out = folder_ + "/legend.csv";
+  EXPECT_EQ(console("export --format labels --out " + out + run()).output,
+            "3 labels written to " + out + "\n");
 }
 
 TEST_F(QuestionsTest, ExportsGeoJsonOfAllLabels) {

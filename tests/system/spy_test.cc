@@ -70,6 +70,7 @@ TEST(SpyTest, AFloodOfChannelsStaysBoundedAndLinesFit) {
   EXPECT_EQ(a["channels"].size(), 1000u);
   EXPECT_EQ(a["nodes"].size(), 1000u);
   EXPECT_EQ(a["unlisted"], 5000);
+  EXPECT_NE(spy.text(1, false).find("\n" + std::string(50, 'X') + "0 "), std::string::npos);  // for a file
   std::istringstream lines(spy.text(1));
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 80u) << line;
 }

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
@@ -171,6 +172,14 @@ TEST_F(SupervisorTest, NamesTheProgramThatCannotBeRun) {
     EXPECT_STREQ(error.what(), "no-such-program is missing: apt-get install some-package");
   }
   EXPECT_THROW(programBeside("no-such-program"), std::runtime_error);
+}
+
+TEST_F(SupervisorTest, AFolderOnPathThatCannotBeReadHidesNoOther) {
+  const std::string loop = folder_ + "/loop", path = std::getenv("PATH");
+  std::filesystem::create_symlink(loop, loop);
+  setenv("PATH", (loop + ":" + path).c_str(), 1);
+  EXPECT_NO_THROW(EXPECT_FALSE(programOnPath("sh", "dash").starts_with(loop)));
+  setenv("PATH", path.c_str(), 1);
 }
 
 TEST_F(SupervisorTest, LastLinesAreTheLast) {
