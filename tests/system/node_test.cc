@@ -2,8 +2,10 @@
 // A fusion node on buses of memory: what it says, and when.
 #include "fusion_node/node.h"
 
+#include <chrono>
 #include <memory>
 #include <set>
+#include <thread>
 
 #include <gtest/gtest.h>
 
@@ -44,7 +46,7 @@ TEST_F(NodeTest, SaysAFewChunksOfItsMapATurnAndAllInTheEnd) {
     air_->publish({"SHOAL_R01_BRICK", wire::encode(brick, kMission, {})});
   }
   std::set<int32_t> chunks;
-  for (int turn = 0; turn < 100'000 && chunks.size() < kBricks; ++turn) {
+  for (int turn = 0; turn < 20'000 && chunks.size() < kBricks; ++turn) {
     node.turn(1);
     int said = 0;
     listener_->receive(0, [&](const comms::Packet& packet) {
@@ -54,6 +56,8 @@ TEST_F(NodeTest, SaysAFewChunksOfItsMapATurnAndAllInTheEnd) {
       if (chunk->num_chunks == kBricks) chunks.insert(chunk->chunk);
     });
     ASSERT_LE(said, 8);
+    if (said == 0)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));  // chunks are paced in wall time
   }
   EXPECT_EQ(chunks.size(), size_t{kBricks});
   node.finish();

@@ -220,6 +220,9 @@ class Serve(unittest.TestCase):
             told = json.loads(command(*arguments, "--run", self.run_dir, "--json"))
             if name == "status":  # a recording's last moment: same map; who has heard whom whole is not in it
                 answer, told = ({k: a[k] for k in ("cells", "labels", "mission_id")} for a in (answer, told))
+            if name == "node":  # the terminal adds who has fallen silent
+                self.assertFalse(told["node"].pop("silent"))
+                self.assertGreaterEqual(told["node"].pop("ago_s"), 0)
             self.assertEqual(answer, told, path)
 
     def test_the_map_is_that_of_the_file(self):
