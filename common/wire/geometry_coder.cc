@@ -7,16 +7,16 @@
 namespace shoal::wire {
 namespace {
 
-constexpr int kEdge = mapping::kBrickEdge;
+using mapping::kBrickEdge;
 
 struct Heights {
-  int lowest = kEdge, highest = -1;
+  int lowest = kBrickEdge, highest = -1;
 };
 
 Heights heightsOf(const Occupancy& occupancy) {
   Heights heights;
-  for (int x = 0; x < kEdge; ++x) {
-    for (int y = 0; y < kEdge; ++y) {
+  for (int x = 0; x < kBrickEdge; ++x) {
+    for (int y = 0; y < kBrickEdge; ++y) {
       const uint16_t column = occupancy.column(x, y);
       if (column == 0) continue;
       heights.lowest = std::min(heights.lowest, std::countr_zero(column));
@@ -99,8 +99,8 @@ void GeometryCoder::code(Coder& coder, const std::array<int32_t, 3>& brick, cons
   const auto lowest = static_cast<int>(lowest_.code(coder, static_cast<uint32_t>(own.lowest)));
   const auto highest = static_cast<int>(highest_.code(coder, static_cast<uint32_t>(own.highest)));
   field.beginBrick(brick);
-  for (int x = 0; x < kEdge; ++x) {
-    for (int y = 0; y < kEdge; ++y) {
+  for (int x = 0; x < kBrickEdge; ++x) {
+    for (int y = 0; y < kBrickEdge; ++y) {
       // The edge of what is known, or of what there is.
       const bool alone =
           field.nearestHeight(x, y - 1, lowest) == kNone && field.nearestHeight(x - 1, y, lowest) == kNone;
