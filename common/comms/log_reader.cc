@@ -19,7 +19,7 @@ namespace shoal::comms {
 namespace {
 
 constexpr std::array<uint8_t, 4> kSync = {0xED, 0xA1, 0xDA, 0x01};
-constexpr size_t kHeaderBytes = 28;
+constexpr size_t kEventHeaderBytes = 28;
 constexpr size_t kBufferBytes = size_t{1} << 18;
 constexpr size_t kSearchStep = size_t{1} << 16;
 
@@ -36,7 +36,7 @@ struct LogReader::Header {
   uint64_t channel_length;
   uint64_t payload_length;
 
-  uint64_t total() const { return kHeaderBytes + channel_length + payload_length; }
+  uint64_t total() const { return kEventHeaderBytes + channel_length + payload_length; }
 };
 
 LogReader::LogReader(const std::string& path) : path_(path), fd_(open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
@@ -69,8 +69,8 @@ std::optional<LogEvent> LogReader::next() {
     }
     const auto event = view(start, header->total());
     if (event.size() < header->total()) break;  // the file was cut while being read
-    const auto channel = event.subspan(kHeaderBytes, header->channel_length);
-    const auto payload = event.subspan(kHeaderBytes + header->channel_length);
+    const auto channel = event.subspan(kEventHeaderBytes, header->channel_length);
+    const auto payload = event.subspan(kEventHeaderBytes + header->channel_length);
     ++counts_.good;
     return LogEvent{header->time_us, Packet{std::string(channel.begin(), channel.end()),
                                             Bytes(payload.begin(), payload.end())}};
@@ -106,8 +106,8 @@ std::span<const uint8_t> LogReader::view(uint64_t offset, size_t size) {
 
 // The header at `offset`, when there is one with sane lengths and the file holds all of its event.
 std::optional<LogReader::Header> LogReader::headerAt(uint64_t offset) {
-  const auto bytes = view(offset, kHeaderBytes);
-  if (bytes.size() < kHeaderBytes || !std::ranges::equal(bytes.first(4), kSync)) return std::nullopt;
+  const auto bytes = view(offset, kEventHeaderBytes);
+  if (bytes.size() < kEventHeaderBytes || !std::ranges::equal(bytes.first(4), kSync)) return std::nullopt;
   const Header header{static_cast<int64_t>(bigEndian(bytes.subspan(12, 8))), bigEndian(bytes.subspan(20, 4)),
                       bigEndian(bytes.subspan(24, 4))};
   if (header.channel_length < 1 || header.channel_length > kMaxChannelLength) return std::nullopt;
@@ -120,7 +120,7 @@ std::optional<LogReader::Header> LogReader::headerAt(uint64_t offset) {
 uint64_t LogReader::findHeader(uint64_t from, uint64_t to) {
   while (from < to) {
     const auto bytes = view(from, kSearchStep);
-    if (bytes.size() < kHeaderBytes) return to;
+    if (bytes.size() < kEventHeaderBytes) return to;
     const auto sync = std::search(bytes.begin(), bytes.end(), kSync.begin(), kSync.end());
     if (sync == bytes.end()) {
       from += bytes.size() - (kSync.size() - 1);

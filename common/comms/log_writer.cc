@@ -13,7 +13,7 @@
 namespace shoal::comms {
 namespace {
 
-constexpr uint64_t kSync = 0xEDA1DA01u;
+constexpr uint64_t kSyncWord = 0xEDA1DA01u;
 
 void put(Bytes& out, uint64_t value, int num_bytes) {
   for (int i = num_bytes - 1; i >= 0; --i) out.push_back(static_cast<uint8_t>(value >> (8 * i)));
@@ -22,7 +22,7 @@ void put(Bytes& out, uint64_t value, int num_bytes) {
 }  // namespace
 
 void appendLogEvent(Bytes& out, const Packet& packet, uint64_t number, int64_t time_us) {
-  put(out, kSync, 4);
+  put(out, kSyncWord, 4);
   put(out, number, 8);
   put(out, static_cast<uint64_t>(time_us), 8);
   put(out, packet.channel.size(), 4);

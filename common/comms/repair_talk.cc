@@ -22,9 +22,9 @@ void putVarint(Bytes& out, uint64_t value) {
 }
 
 // Reads what the above wrote; past the end it fails for good and returns zeros.
-class Reader {
+class StatementReader {
  public:
-  explicit Reader(std::span<const uint8_t> bytes) : bytes_(bytes) {}
+  explicit StatementReader(std::span<const uint8_t> bytes) : bytes_(bytes) {}
   bool failed() const { return failed_; }
   size_t remaining() const { return bytes_.size(); }
   uint8_t byte() {
@@ -78,7 +78,7 @@ void put(Bytes& out, const Statement& s) {
   }
 }
 
-bool read(Reader& in, Statement& s) {
+bool read(StatementReader& in, Statement& s) {
   const uint8_t first = in.byte();
   if ((first & 3) > 2 || first > (kAsks | 2)) return false;
   s.kind = static_cast<Statement::Kind>(first & 3);
@@ -130,7 +130,7 @@ Bytes encodeTalk(const RepairTalk& talk) {
 }
 
 std::optional<RepairTalk> decodeTalk(std::span<const uint8_t> bytes) {
-  Reader in(bytes);
+  StatementReader in(bytes);
   RepairTalk talk;
   talk.salt = static_cast<uint32_t>(in.number(4));
   while (in.remaining() > 0) {

@@ -9,7 +9,7 @@ namespace shoal::comms {
 namespace {
 
 __extension__ using Wide = __int128;
-constexpr int64_t kSecond = 1'000'000;
+constexpr int64_t kSecondUs = 1'000'000;
 
 // Where a window may start: a datagram and the bytes sent before it.
 struct Start {
@@ -83,8 +83,8 @@ MeteredWindow WindowMeter::worst() const {
     const int64_t end_us = sent[j].at_us;
     starts.push_back({end_us, bytes, j});
     bytes += sent[j].bytes;
-    if (sent[j].bytes > alone.bytes) alone = {end_us, kSecond, sent[j].bytes, 1, 0, true};
-    for (; end_us - starts[young].at_us >= kSecond; ++young) hull.add(starts[young]);
+    if (sent[j].bytes > alone.bytes) alone = {end_us, kSecondUs, sent[j].bytes, 1, 0, true};
+    for (; end_us - starts[young].at_us >= kSecondUs; ++young) hull.add(starts[young]);
 
     const auto consider = [&](const Start& start, int64_t length_us) {
       if (start.index == j) return;
@@ -92,7 +92,7 @@ MeteredWindow WindowMeter::worst() const {
       if (several.length_us != 0 && !steeper(inside, length_us, several.bytes, several.length_us)) return;
       several = {start.at_us, length_us, inside, j - start.index + 1, 0, true};
     };
-    consider(starts[young], kSecond);
+    consider(starts[young], kSecondUs);
     if (!hull.empty()) {
       const Start start = hull.steepestTo(end_us, bytes);
       consider(start, end_us - start.at_us);
@@ -100,16 +100,18 @@ MeteredWindow WindowMeter::worst() const {
   }
 
   if (bytes_per_s_ == 0) {
-    return several.length_us != 0 && steeper(several.bytes, several.length_us, alone.bytes, kSecond) ? several
-                                                                                                     : alone;
+    return several.length_us != 0 && steeper(several.bytes, several.length_us, alone.bytes, kSecondUs)
+               ? several
+               : alone;
   }
   const auto allowed = [&](int64_t length_us) {
-    return static_cast<double>(bytes_per_s_) * static_cast<double>(length_us) / static_cast<double>(kSecond);
+    return static_cast<double>(bytes_per_s_) * static_cast<double>(length_us) /
+           static_cast<double>(kSecondUs);
   };
-  if (alone.bytes > 0) alone.share = std::min(1.0, static_cast<double>(alone.bytes) / allowed(kSecond));
+  if (alone.bytes > 0) alone.share = std::min(1.0, static_cast<double>(alone.bytes) / allowed(kSecondUs));
   if (several.length_us != 0) {
     several.share = static_cast<double>(several.bytes) / allowed(several.length_us);
-    several.within_budget = Wide{several.bytes} * kSecond <= Wide{bytes_per_s_} * several.length_us;
+    several.within_budget = Wide{several.bytes} * kSecondUs <= Wide{bytes_per_s_} * several.length_us;
   }
   if (several.length_us == 0) return alone;
   return !several.within_budget || several.share > alone.share ? several : alone;

@@ -13,7 +13,7 @@
 namespace shoal::matching {
 namespace {
 
-constexpr double kOne = 1e9;  // a score of 1
+constexpr double kScoreOne = 1e9;  // a score of 1
 
 // The groups that come to their robot first: each group once, with the first robot that has it.
 std::vector<std::vector<int>> groupsByRobot(const AssociationGraph& graph, const Contraction& contraction,
@@ -39,13 +39,14 @@ std::vector<std::vector<int>> groupsByRobot(const AssociationGraph& graph, const
 std::vector<int> choose(const std::vector<int>& groups, const std::vector<Place>& place, int num_columns,
                         const std::vector<std::set<int>>& taken) {
   const auto rows = static_cast<Eigen::Index>(groups.size());
-  const double taken_cost = static_cast<double>(rows + 1) * (2 * kOne + 1);  // dearer than all labels new
-  Eigen::MatrixXd cost = Eigen::MatrixXd::Constant(rows, num_columns + rows, kOne);
-  cost.rightCols(rows).setConstant(2 * kOne + 1);
+  const double taken_cost =
+      static_cast<double>(rows + 1) * (2 * kScoreOne + 1);  // dearer than all labels new
+  Eigen::MatrixXd cost = Eigen::MatrixXd::Constant(rows, num_columns + rows, kScoreOne);
+  cost.rightCols(rows).setConstant(2 * kScoreOne + 1);
   for (Eigen::Index r = 0; r < rows; ++r) {
     const Place& at = place[static_cast<size_t>(groups[static_cast<size_t>(r)])];
     for (size_t k = 0; k < at.numScores(); ++k) cost(r, at.column(k)) -= at.score(k);
-    if (!taken[static_cast<size_t>(r)].empty()) cost.row(r).tail(rows).setConstant(kOne - 1);
+    if (!taken[static_cast<size_t>(r)].empty()) cost.row(r).tail(rows).setConstant(kScoreOne - 1);
     for (const int column : taken[static_cast<size_t>(r)])
       if (column < num_columns) cost(r, column) = taken_cost;
   }

@@ -9,7 +9,7 @@
 namespace shoal::matching {
 namespace {
 
-__extension__ using Wide = unsigned __int128;
+__extension__ using UnsignedWide = unsigned __int128;
 
 constexpr int kTableBits = 11;
 constexpr int kMantissaBits = 62;  // a mantissa in [1, 2) is in [2^62, 2^63)
@@ -18,7 +18,7 @@ constexpr int kMantissaBits = 62;  // a mantissa in [1, 2) is in [2^62, 2^63)
 constexpr int64_t byBits(uint64_t mantissa) {
   int64_t log = 0;
   for (int bit = kLogBits - 1; bit >= 0; --bit) {
-    Wide square = static_cast<Wide>(mantissa) * mantissa >> kMantissaBits;
+    UnsignedWide square = static_cast<UnsignedWide>(mantissa) * mantissa >> kMantissaBits;
     if (square >> (kMantissaBits + 1) != 0) {
       log |= int64_t{1} << bit;
       square >>= 1;
@@ -52,12 +52,13 @@ int64_t fixedLog2(int64_t x) {
   const uint64_t lower = (uint64_t{1} << kMantissaBits) + (part << (kMantissaBits - kTableBits));
 
   // mantissa = lower (1 + d), d < 2^-11: log2(1 + d) = (d - d²/2 + d³/3) log2(e), the rest is below 2^-45.
-  const auto d = static_cast<uint64_t>((static_cast<Wide>(mantissa - lower) << kMantissaBits) / lower);
-  const auto square = static_cast<uint64_t>(static_cast<Wide>(d) * d >> kMantissaBits);
-  const auto cube = static_cast<uint64_t>(static_cast<Wide>(square) * d >> kMantissaBits);
+  const auto d =
+      static_cast<uint64_t>((static_cast<UnsignedWide>(mantissa - lower) << kMantissaBits) / lower);
+  const auto square = static_cast<uint64_t>(static_cast<UnsignedWide>(d) * d >> kMantissaBits);
+  const auto cube = static_cast<uint64_t>(static_cast<UnsignedWide>(square) * d >> kMantissaBits);
   const uint64_t natural = d - square / 2 + cube / 3;
   constexpr uint64_t kLog2E = 0x5c551d94ae0bf85d;  // log2(e) 2^62
-  const auto rest = static_cast<uint64_t>(static_cast<Wide>(natural) * kLog2E >> kMantissaBits);
+  const auto rest = static_cast<uint64_t>(static_cast<UnsignedWide>(natural) * kLog2E >> kMantissaBits);
   return (static_cast<int64_t>(exponent) << kLogBits) + table()[part] +
          static_cast<int64_t>(rest >> (kMantissaBits - kLogBits));
 }

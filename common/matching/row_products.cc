@@ -11,10 +11,10 @@ namespace shoal::matching {
 namespace {
 
 constexpr size_t kBlock = WholeRows::kBlock;
-constexpr size_t kLanes = 4;
+constexpr size_t kSumLanes = 4;
 constexpr size_t kAtOnce = 4096;
 
-// sums[i][j] = Σ a_i b_j over `count` numbers, a multiple of kLanes; rows lie `stride` apart.
+// sums[i][j] = Σ a_i b_j over `count` numbers, a multiple of kSumLanes; rows lie `stride` apart.
 using Multiply = void (*)(const double* a, const double* b, size_t stride, size_t count,
                           double (&sums)[kBlock][kBlock]);
 
@@ -22,9 +22,9 @@ void multiplyAnywhere(const double* a, const double* b, size_t stride, size_t co
                       double (&sums)[kBlock][kBlock]) {
   for (size_t i = 0; i < kBlock; ++i) {
     for (size_t j = 0; j < kBlock; ++j) {
-      double lane[kLanes] = {};
-      for (size_t k = 0; k < count; k += kLanes)
-        for (size_t l = 0; l < kLanes; ++l) lane[l] += a[i * stride + k + l] * b[j * stride + k + l];
+      double lane[kSumLanes] = {};
+      for (size_t k = 0; k < count; k += kSumLanes)
+        for (size_t l = 0; l < kSumLanes; ++l) lane[l] += a[i * stride + k + l] * b[j * stride + k + l];
       sums[i][j] = lane[0] + lane[1] + lane[2] + lane[3];
     }
   }
@@ -40,7 +40,7 @@ __attribute__((target("avx2,fma"))) void multiplyAvx2(const double* a, const dou
     __m256d sum[2][kBlock];
     for (auto& row : sum)
       for (__m256d& s : row) s = _mm256_setzero_pd();
-    for (size_t k = 0; k < count; k += kLanes) {
+    for (size_t k = 0; k < count; k += kSumLanes) {
       const __m256d x0 = _mm256_loadu_pd(a0 + k), x1 = _mm256_loadu_pd(a1 + k);
 #pragma GCC unroll 4
       for (size_t j = 0; j < kBlock; ++j) {
@@ -51,7 +51,7 @@ __attribute__((target("avx2,fma"))) void multiplyAvx2(const double* a, const dou
     }
     for (size_t r = 0; r < 2; ++r) {
       for (size_t j = 0; j < kBlock; ++j) {
-        double lane[kLanes];
+        double lane[kSumLanes];
         _mm256_storeu_pd(lane, sum[r][j]);
         sums[i + r][j] = lane[0] + lane[1] + lane[2] + lane[3];
       }
@@ -73,7 +73,7 @@ size_t roundedUp(size_t n, size_t step) { return (n + step - 1) / step * step; }
 
 WholeRows::WholeRows(size_t num_rows, size_t width)
     : num_blocks_(roundedUp(num_rows, kBlock) / kBlock),
-      stride_(roundedUp(width, kLanes)),
+      stride_(roundedUp(width, kSumLanes)),
       numbers_(num_blocks_ * kBlock * stride_) {}
 
 std::array<std::array<int64_t, kBlock>, kBlock> WholeRows::products(size_t a, size_t b) const {

@@ -16,8 +16,8 @@ constexpr size_t kSpares = 2;
 constexpr int32_t kApart = 3;           // cells; nearer ones would show the same again
 constexpr int32_t kFirstPatience = 4;   // images before an example may change, doubled with every change
 constexpr int32_t kMostDoublings = 24;  // more images than that nobody flies
-const std::string kKind = "shoalEXB";
-constexpr uint32_t kVersion = 1;
+const std::string kBookKind = "shoalEXB";
+constexpr uint32_t kBookVersion = 1;
 
 bool areNear(const world::CellIndex& a, const world::CellIndex& b) {
   return std::abs(a.x - b.x) <= kApart && std::abs(a.y - b.y) <= kApart && std::abs(a.z - b.z) <= kApart;
@@ -204,7 +204,7 @@ Picture get(topics::StateReader& in, int32_t vocabulary) {
 }  // namespace
 
 std::vector<uint8_t> ExampleBook::checkpoint() const {
-  topics::StateWriter out(kKind, kVersion);
+  topics::StateWriter out(kBookKind, kBookVersion);
   out.u64(pages_.size());
   for (const auto& [topic, page] : pages_) {
     out.i32(number(topic));
@@ -220,7 +220,7 @@ std::vector<uint8_t> ExampleBook::checkpoint() const {
 }
 
 void ExampleBook::restore(std::span<const uint8_t> checkpoint, int32_t vocabulary) {
-  topics::StateReader in(checkpoint, kKind, kVersion);
+  topics::StateReader in(checkpoint, kBookKind, kBookVersion);
   std::map<world::TopicId, Page> pages;
   for (size_t left = in.count(8); left > 0; --left) {
     const int32_t topic = in.i32();

@@ -14,8 +14,8 @@
 namespace shoal::topics {
 namespace {
 
-const std::string kKind = "shoalCLM";
-constexpr uint32_t kVersion = 4;
+const std::string kLabelModelKind = "shoalCLM";
+constexpr uint32_t kLabelModelVersion = 4;
 constexpr size_t kCellBytes = 56, kWordBytes = 8;
 
 }  // namespace
@@ -31,7 +31,7 @@ uint64_t CellLabelModel::identity() const {
 }
 
 std::vector<uint8_t> CellLabelModel::checkpoint() const {
-  StateWriter out(kKind, kVersion);
+  StateWriter out(kLabelModelKind, kLabelModelVersion);
   out.u64(identity());
   out.i32(observation_);
   out.i64(time_.us);
@@ -77,7 +77,7 @@ CellLabelModel CellLabelModel::resumed(const CellLabelHyperparameters& hyperpara
   CellLabelModel model(hyperparameters, groups, seed, robot);
   check(known, model.counts_.vocabularySize(), hyperparameters.max_topics);
   model.begin(known);
-  StateReader in(checkpoint, kKind, kVersion);
+  StateReader in(checkpoint, kLabelModelKind, kLabelModelVersion);
   in.demand(in.u64() == model.identity(),
             "it is of another robot, seed, vocabulary, hyper-parameters or known topics");
   model.observation_ = in.i32();

@@ -10,7 +10,7 @@
 namespace shoal::topics {
 namespace {
 
-constexpr int32_t kCellsAtOnce = 8192;  // between two breaths
+constexpr int32_t kCellsBetweenBreaths = 8192;
 
 }  // namespace
 
@@ -45,7 +45,7 @@ std::vector<int32_t> likeliestLabels(const LabelCandidates& candidates, int roun
   std::vector<int32_t> votes(static_cast<size_t>(candidates.numLabels()));
   std::vector<int32_t> label(static_cast<size_t>(num_cells));
   const auto likeliest = [&](int32_t c) {
-    if (c % kCellsAtOnce == 0) breathe();
+    if (c % kCellsBetweenBreaths == 0) breathe();
     int32_t best = -1;
     int64_t largest = 0;
     for (const LabelCandidates::Candidate& candidate : candidates.of(c)) {

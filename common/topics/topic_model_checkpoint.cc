@@ -12,8 +12,8 @@
 namespace shoal::topics {
 namespace {
 
-const std::string kKind = "shoalTPM";
-constexpr uint32_t kVersion = 3;
+const std::string kTopicModelKind = "shoalTPM";
+constexpr uint32_t kTopicModelVersion = 3;
 
 }  // namespace
 
@@ -26,7 +26,7 @@ uint64_t TopicModel::identity() const {
 
 std::vector<uint8_t> TopicModel::checkpoint() const {
   const TopicSlots& slots = gibbs_.slots();
-  StateWriter out(kKind, kVersion);
+  StateWriter out(kTopicModelKind, kTopicModelVersion);
   out.u64(identity());
   out.i32(observation_);
   out.i64(time_.us);
@@ -73,7 +73,7 @@ TopicModel TopicModel::resumed(const Hyperparameters& hyperparameters, int32_t v
   TopicModel model(hyperparameters, vocabulary_size, seed, robot);  // what it knew is among what was adopted
   model.known_hash_ = hashOf(known);
   const TopicSlots& slots = model.gibbs_.slots();
-  StateReader in(checkpoint, kKind, kVersion);
+  StateReader in(checkpoint, kTopicModelKind, kTopicModelVersion);
   in.demand(in.u64() == model.identity(),
             "it is of another robot, seed, vocabulary, hyper-parameters or known topics");
   model.observation_ = in.i32();

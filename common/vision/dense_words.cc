@@ -17,7 +17,7 @@ namespace shoal::vision {
 namespace {
 
 // Grows whenever the same pictures and vocabulary would give other words.
-constexpr uint64_t kExtractionVersion = 1;
+constexpr uint64_t kDenseWordsVersion = 1;
 
 void check(const DenseVocabulary& vocabulary) {
   const std::vector<DenseWordList>& lists = vocabulary.lists();
@@ -37,7 +37,7 @@ void check(const DenseVocabulary& vocabulary) {
 }
 
 uint64_t denseFingerprint(const DenseVocabulary& vocabulary) {
-  uint64_t hash = hashCombine(vocabulary.fingerprint(), kExtractionVersion);
+  uint64_t hash = hashCombine(vocabulary.fingerprint(), kDenseWordsVersion);
   for (const int setting : {kBlockSize, kBrighter, kMaxCorrected, kPhotometricSettings.level,
                             kPhotometricSettings.power, kPhotometricSettings.max_octaves}) {
     hash = hashCombine(hash, static_cast<uint64_t>(setting));

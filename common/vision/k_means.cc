@@ -48,7 +48,7 @@ std::vector<int16_t> drawWords(const Points& points, const KMeansOptions& option
   return words;
 }
 
-int16_t roundedMean(int64_t sum, int64_t count) {
+int16_t roundedMeanOf(int64_t sum, int64_t count) {
   const int64_t half = sum >= 0 ? count / 2 : -count / 2;
   return static_cast<int16_t>((sum + half) / count);
 }
@@ -78,7 +78,7 @@ std::vector<int16_t> update(const Points& points, std::span<const int32_t> assig
       continue;
     }
     for (size_t d = 0; d < points.dimensions; ++d) {
-      word[static_cast<ptrdiff_t>(d)] = roundedMean(sums[k * points.dimensions + d], members[k]);
+      word[static_cast<ptrdiff_t>(d)] = roundedMeanOf(sums[k * points.dimensions + d], members[k]);
     }
   }
   return updated;

@@ -17,7 +17,7 @@ namespace {
 constexpr int kMinSide = 32;  // pixels
 
 // Grows whenever the same picture and vocabulary would give other words.
-constexpr uint64_t kExtractionVersion = 1;
+constexpr uint64_t kPaperWordsVersion = 1;
 
 enum Group : size_t { kOrbL, kOrbA, kOrbB, kHue, kIntensity };
 
@@ -37,7 +37,7 @@ std::vector<world::WordGroup> paperGroups(int32_t orb_words) {
 }
 
 uint64_t paperFingerprint(const Vocabulary& vocabulary) {
-  uint64_t hash = hashCombine(vocabulary.fingerprint(), kExtractionVersion);
+  uint64_t hash = hashCombine(vocabulary.fingerprint(), kPaperWordsVersion);
   for (const int parameter : {kClaheClipLimit, kClaheTiles, kOrbKeyPoints, kThumbnailColumns}) {
     hash = hashCombine(hash, static_cast<uint64_t>(parameter));
   }

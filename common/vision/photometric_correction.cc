@@ -11,7 +11,7 @@
 namespace shoal::vision {
 namespace {
 
-constexpr int kLogBits = 16;
+constexpr int kPowerLogBits = 16;
 constexpr int64_t kPowerStep = 1 << 14;  // so that the sum over an image stays below 2^63
 
 int64_t powerOf(int64_t value) {
@@ -22,7 +22,7 @@ int64_t powerOf(int64_t value) {
 
 // log2 of the value whose power this is.
 int32_t logOfValue(int64_t power) {
-  return fixedLog2(static_cast<uint64_t>(power) + 1, kLogBits) / kPhotometricSettings.power;
+  return fixedLog2(static_cast<uint64_t>(power) + 1, kPowerLogBits) / kPhotometricSettings.power;
 }
 
 }  // namespace
@@ -57,7 +57,7 @@ void PhotometricCorrection::restore(const std::array<int64_t, 4>& state) {
 }
 
 ChannelResponses PhotometricCorrection::responses() const {
-  constexpr int32_t kMost = kPhotometricSettings.max_octaves << kLogBits;
+  constexpr int32_t kMost = kPhotometricSettings.max_octaves << kPowerLogBits;
   ChannelResponses responses;
   for (size_t c = 0; c < 3; ++c) {
     int32_t octaves = 0;  // of gain, in steps of 2^-16

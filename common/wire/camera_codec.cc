@@ -25,8 +25,6 @@ double doubleFrom(ByteReader& in) { return std::bit_cast<double>(in.bigEndian(8)
 
 constexpr float kDeepest = 20000.f;  // metres
 
-bool isTime(int64_t us) { return us >= 0 && us <= kMaxTimeUs; }
-
 /// What every decoder begins with.
 Result<int64_t> fingerprintOf(std::span<const uint8_t> bytes) {
   if (bytes.size() > kMaxCameraBytes) return DecodeError::kTooLong;
@@ -75,7 +73,7 @@ Result<ImageView> decodeImage(std::span<const uint8_t> bytes) {
   const auto image = takeImage(in);
   if (!image) return image.error();
   if (in.remaining() > 0) return DecodeError::kTrailingBytes;
-  if (!isTime(image->time.us)) return DecodeError::kBadField;
+  if (!isTime(image->time)) return DecodeError::kBadField;
   return *image;
 }
 
@@ -87,7 +85,7 @@ Result<std::vector<KindAndImage>> decodeImages(std::span<const uint8_t> bytes) {
   const world::Timestamp time{int64From(in)};
   const int32_t num_images = int32From(in);
   if (in.failed()) return DecodeError::kTooShort;
-  if (!isTime(time.us) || num_images < 0 || num_images > kMaxImagesPerMessage) return DecodeError::kBadField;
+  if (!isTime(time) || num_images < 0 || num_images > kMaxImagesPerMessage) return DecodeError::kBadField;
   std::vector<KindAndImage> images(static_cast<size_t>(num_images));
   for (KindAndImage& each : images) each.kind = int16From(in);
   for (KindAndImage& each : images) {
@@ -116,7 +114,7 @@ Result<world::TimedPose> decodePose(std::span<const uint8_t> bytes) {
   if (is_pose) in.take(2 * 3 * 8);  // rotation_rate, accel
   if (in.failed()) return DecodeError::kTooShort;
   if (in.remaining() > 0) return DecodeError::kTrailingBytes;
-  if (!isTime(pose.time.us) || !pose.isSane()) return DecodeError::kBadField;
+  if (!isTime(pose.time) || !pose.isSane()) return DecodeError::kBadField;
   return pose;
 }
 
@@ -142,7 +140,7 @@ Result<world::Vehicle> decodeVehicle(std::span<const uint8_t> bytes) {
   const float depth = std::bit_cast<float>(static_cast<uint32_t>(in.bigEndian(4)));
   if (in.failed()) return DecodeError::kBadLength;
   if (in.remaining() > 0) return DecodeError::kTrailingBytes;
-  if (!isTime(time_us) || !(battery <= 100.f) || !(depth <= kDeepest)) return DecodeError::kBadField;
+  if (!isTime({time_us}) || !(battery <= 100.f) || !(depth <= kDeepest)) return DecodeError::kBadField;
   world::Vehicle vehicle;
   if (battery >= 0) vehicle.battery_percent = static_cast<int32_t>(std::lround(battery));
   if (depth >= 0) vehicle.depth_m = depth;

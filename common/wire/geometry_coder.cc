@@ -9,10 +9,10 @@
 namespace shoal::wire {
 namespace {
 
-constexpr int kEdge = mapping::kBrickEdge;
+using mapping::kBrickEdge;
 
 size_t placesBetween(int lowest, int highest) {
-  return static_cast<size_t>(std::max(highest - lowest + 1, 0)) * kEdge * kEdge;
+  return static_cast<size_t>(std::max(highest - lowest + 1, 0)) * kBrickEdge * kBrickEdge;
 }
 
 constexpr int kNone = CellField::kNone;
@@ -102,8 +102,8 @@ bool GeometryCoder::code(Coder& coder, const std::array<int32_t, 3>& brick, cons
   places_ += placesBetween(lowest, highest);
   if (places_ > kMaxPlacesPerMessage) return false;
   field.beginBrick(brick);
-  for (int x = 0; x < kEdge; ++x) {
-    for (int y = 0; y < kEdge; ++y) {
+  for (int x = 0; x < kBrickEdge; ++x) {
+    for (int y = 0; y < kBrickEdge; ++y) {
       // The edge of what is known, or of what there is.
       const bool alone =
           field.nearestHeight(x, y - 1, lowest) == kNone && field.nearestHeight(x - 1, y, lowest) == kNone;

@@ -16,10 +16,6 @@ namespace {
 
 using mapping::LabelSummary;
 
-constexpr int32_t kMaxLabel = kMaxRobotNumber * 10000 + world::kMaxTopicId;
-
-bool isTime(world::Timestamp time) { return time.us >= 0 && time.us <= kMaxTimeUs; }
-
 std::string fault(const LabelsChunk& chunk) {
   if (chunk.num_chunks < 1 || chunk.num_chunks > kMaxChunks) return "1 to 32767 chunks";
   if (chunk.chunk < 0 || chunk.chunk >= chunk.num_chunks) return "chunks are numbered from 0";

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "shoal/world/ids.h"
 #include "shoal/world/mission_time.h"
 
 namespace shoal::wire {
@@ -39,9 +40,11 @@ inline constexpr int32_t kMaxRoster = 256;
 inline constexpr int32_t kMaxCorrespondencesPerChunk = 16384;
 inline constexpr int32_t kMaxLabelsPerChunk = 4096;
 inline constexpr int32_t kMaxRobotsPerLabel = 256;
+inline constexpr int32_t kMaxLabel = kMaxRobotNumber * 10000 + world::kMaxTopicId;
 inline constexpr size_t kMaxNameBytes = 64;
 inline constexpr int32_t kMaxChunks = 32767;
 
 using world::kMaxTimeUs;
+constexpr bool isTime(world::Timestamp time) { return time.us >= 0 && time.us <= kMaxTimeUs; }
 
 }  // namespace shoal::wire

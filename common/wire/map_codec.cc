@@ -20,10 +20,6 @@ namespace {
 using mapping::GlobalCell;
 using mapping::kCertaintySteps;
 
-constexpr int32_t kMaxLabel = kMaxRobotNumber * 10000 + world::kMaxTopicId;
-
-bool isTime(world::Timestamp time) { return time.us >= 0 && time.us <= kMaxTimeUs; }
-
 std::string faultOf(std::span<const GlobalCell> cells) {
   for (size_t i = 0; i < cells.size(); ++i) {
     const GlobalCell& c = cells[i];

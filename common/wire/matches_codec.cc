@@ -15,8 +15,6 @@ namespace {
 
 using mapping::Correspondence;
 
-constexpr int32_t kMaxLabel = kMaxRobotNumber * 10000 + world::kMaxTopicId;
-
 std::string fault(const MatchesChunk& chunk) {
   if (chunk.num_chunks < 1 || chunk.num_chunks > kMaxChunks) return "1 to 32767 chunks";
   if (chunk.chunk < 0 || chunk.chunk >= chunk.num_chunks) return "chunks are numbered from 0";

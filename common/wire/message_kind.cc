@@ -18,6 +18,7 @@
 
 #include "shoal/wire/bytes.h"
 #include "shoal/wire/limits.h"
+#include "shoal/wire/message.h"
 
 namespace shoal::wire {
 
@@ -27,15 +28,6 @@ std::optional<MessageKind> parseChannelKind(std::string_view text) {
   }
   return std::nullopt;
 }
-
-namespace {
-
-template <typename Message>
-size_t fixedBytes() {
-  return static_cast<size_t>(Message{}.getEncodedSize());
-}
-
-}  // namespace
 
 size_t fixedBytesOf(MessageKind kind) {
   switch (kind) {

@@ -279,17 +279,17 @@ Planes dequantize(const Planes& levels, int quality, int cut, bool is_sharp) {
   return planes;
 }
 
-struct Header {
+struct PictureHeader {
   int quality = 0, cut = 0;
 };
 
 template <typename Coder>
-Header codeHeader(Coder& coder, const Header& header) {
+PictureHeader codeHeader(Coder& coder, const PictureHeader& header) {
   return {static_cast<int>(coder.direct(static_cast<uint64_t>(header.quality), 5)),
           static_cast<int>(coder.direct(static_cast<uint64_t>(header.cut), 3))};
 }
 
-Bytes encodeFirst(const Planes& levels, const Header& header, Planes& coarse) {
+Bytes encodeFirst(const Planes& levels, const PictureHeader& header, Planes& coarse) {
   coarse = levels;
   Encoder encoder;
   codeHeader(encoder, header);
@@ -340,7 +340,7 @@ bool isFinest(std::span<const Bytes> layers) {
 std::vector<uint8_t> decodePicture(std::span<const Bytes> layers) {
   if (layers.empty()) throw std::invalid_argument("a picture has at least one layer");
   Decoder first(layers[0]);
-  const Header header = codeHeader(first, {});
+  const PictureHeader header = codeHeader(first, {});
   Planes coarse;
   codeFirst(first, coarse, header.cut);
   const bool is_sharp = layers.size() > 1;

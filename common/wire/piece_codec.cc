@@ -25,8 +25,6 @@ using mapping::Piece;
 using mapping::PieceKind;
 using mapping::TopicPart;
 
-bool isTime(world::Timestamp time) { return time.us >= 0 && time.us <= kMaxTimeUs; }
-
 template <typename Cells>
 std::string faultOfCells(const Cells& cells, const std::array<int32_t, 3>& brick) {
   if (cells.empty()) return "it has no cells";

@@ -10,7 +10,7 @@
 namespace shoal::world {
 namespace {
 
-constexpr uint8_t kUnlabelled = 255;
+constexpr uint8_t kUnlabelledId = 255;
 
 /// The picture at (x, y) pixels, within half a pixel of it; eight bits of fraction, so that every machine
 /// rounds alike. Beyond the outermost centres the border repeats.
@@ -56,9 +56,9 @@ OrthoWorld::OrthoWorld(std::string name, cv::Mat color, cv::Mat labels, double m
                                 std::to_string(color_.cols) + " x " + std::to_string(color_.rows));
   }
   std::array<bool, 256> known{};
-  known[kUnlabelled] = true;
+  known[kUnlabelledId] = true;
   for (const TruthClass& c : classes_) {
-    if (c.id < 0 || c.id >= kUnlabelled || known[static_cast<size_t>(c.id)]) {
+    if (c.id < 0 || c.id >= kUnlabelledId || known[static_cast<size_t>(c.id)]) {
       throw std::invalid_argument("class ids must be distinct and in [0, 254], got " + std::to_string(c.id));
     }
     known[static_cast<size_t>(c.id)] = true;
@@ -86,7 +86,7 @@ Observation OrthoWorld::render(const Intrinsics& intrinsics, const Pose& world_f
   seen.world_from_camera = world_from_camera;
   seen.color = cv::Mat(size, CV_8UC3, cv::Scalar::all(0));
   seen.depth_m = cv::Mat(size, CV_32FC1, cv::Scalar::all(0));
-  if (hasFlatTruth()) seen.labels = cv::Mat(size, CV_8UC1, cv::Scalar::all(kUnlabelled));
+  if (hasFlatTruth()) seen.labels = cv::Mat(size, CV_8UC1, cv::Scalar::all(kUnlabelledId));
 
   const Eigen::Vector3d eye = world_from_camera.translation();
   for (int v = 0; v < intrinsics.height; ++v) {
@@ -126,13 +126,13 @@ std::optional<uint8_t> OrthoWorld::truthOfSquare(const Grid& grid, const CellInd
   for (int y = within(y0, labels_.rows); y < within(y1, labels_.rows); ++y) {
     const uint8_t* row = labels_.ptr<uint8_t>(y);
     for (int x = within(x0, labels_.cols); x < within(x1, labels_.cols); ++x) {
-      if (row[x] == kUnlabelled) continue;
+      if (row[x] == kUnlabelledId) continue;
       ++votes[row[x]];
       ++labelled;
     }
   }
   const double pixels = (x1 - x0) * (y1 - y0);
-  if (labelled == 0 || 2.0 * static_cast<double>(labelled) < pixels) return kUnlabelled;
+  if (labelled == 0 || 2.0 * static_cast<double>(labelled) < pixels) return kUnlabelledId;
   return static_cast<uint8_t>(std::max_element(votes.begin(), votes.end()) - votes.begin());
 }
 

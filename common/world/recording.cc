@@ -11,6 +11,7 @@
 
 #include "shoal/demand.h"
 #include "shoal/world/flat_floor.h"
+#include "shoal/world/json_fields.h"
 #include "shoal/world/stamped_files.h"
 
 namespace shoal::world {
@@ -60,10 +61,6 @@ void noteLines(Recording& recording, const std::string& name, const StampedList<
     recording.left_out.push_back(std::to_string(list.duplicates) + " entries of " + name +
                                  " at a time twice");
   }
-}
-
-[[noreturn]] void refuse(const fs::path& file, const std::string& why) {
-  throw std::invalid_argument(file.string() + ": " + why);
 }
 
 /// Finds on the first picture that can be decoded what would be wrong with all of them.

@@ -32,7 +32,7 @@ class Counter : public Bus {
   int datagrams = 0;
 };
 
-Packet packet(const std::string& channel, size_t size, uint64_t content) {
+Packet packetWith(const std::string& channel, size_t size, uint64_t content) {
   Packet made{channel, Bytes(size)};
   for (size_t i = 0; i < std::min<size_t>(size, 8); ++i)
     made.bytes[i] = static_cast<uint8_t>(content >> 8 * i);
@@ -72,7 +72,7 @@ TEST(BacklogTest, IsWhatIsThenSentUntilNothingWaits) {
         // Those that wait longer are smaller, as a robot's first bricks are.
         const size_t size = 25 + i * 100 / most + random.below(60);
         sender.offer(traffic, channel + std::to_string(random.below(2 * most)),
-                     packet(channel, size, random()));
+                     packetWith(channel, size, random()));
       }
     };
     offerSome(most);
@@ -113,7 +113,8 @@ TEST(BacklogTest, StaysNearWhatWouldBeSentAtTheCostOfOneClassACall) {
       const TrafficClass traffic = random.below(2) == 0 ? TrafficClass::kBricks : TrafficClass::kCertainty;
       const std::string channel = "SHOAL_R00_" + std::to_string(static_cast<int>(traffic));
       const auto size = static_cast<size_t>(25 + 30 * (step / 50) % 90 + static_cast<int>(random.below(40)));
-      sender.offer(traffic, channel + std::to_string(random.below(3000)), packet(channel, size, random()));
+      sender.offer(traffic, channel + std::to_string(random.below(3000)),
+                   packetWith(channel, size, random()));
     }
     for (const int64_t until_us = now_us + 1'000'000; now_us < until_us;)
       now_us = std::min(sender.pump(now_us), until_us);
@@ -152,7 +153,7 @@ TEST(BacklogTest, IsExactWhenLittleWaits) {
     FakeWall wall;
     Sender sender(bus, nullptr, sharing(0, wall));
     for (size_t i = 0; i < count; ++i)
-      sender.offer(TrafficClass::kBricks, std::to_string(100 + i), packet("B", 40 + 3 * i, i));
+      sender.offer(TrafficClass::kBricks, std::to_string(100 + i), packetWith("B", 40 + 3 * i, i));
     const int64_t published = sender.backlog();
     sender.pump(0);
     if (bus.datagrams <= 4) {
@@ -185,13 +186,13 @@ TEST(BacklogTest, EveryClassDrainsHoweverMuchTheOthersHaveToSay) {
     SenderOptions options;
     options.bytes_per_s = budget;
     options.wall = wall.time();
-    options.make_heartbeat = [](int64_t) { return packet("SHOAL_R00_HEARTBEAT", 80, 0); };
+    options.make_heartbeat = [](int64_t) { return packetWith("SHOAL_R00_HEARTBEAT", 80, 0); };
     Sender sender(bus, nullptr, options);
     int64_t now_us = 0;
     uint64_t n = 0;
     const auto offer = [&](TrafficClass traffic) {
       const std::string channel = "SHOAL_R00_" + std::to_string(static_cast<int>(traffic));
-      sender.offer(traffic, channel + std::to_string(n), packet(channel, 20 + random.below(1300), n));
+      sender.offer(traffic, channel + std::to_string(n), packetWith(channel, 20 + random.below(1300), n));
       ++n;
     };
     const auto othersTalk = [&] {

@@ -9,14 +9,13 @@
 
 #include <gtest/gtest.h>
 
+#include "second.h"
 #include "shoal/comms/packet.h"
 #include "shoal/comms/window_meter.h"
 #include "shoal/random.h"
 
 namespace shoal::comms {
 namespace {
-
-constexpr int64_t kSecond = 1'000'000;
 
 struct Sent {
   int64_t at_us;

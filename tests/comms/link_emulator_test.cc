@@ -14,14 +14,13 @@
 #include <gtest/gtest.h>
 
 #include "fake_wall.h"
+#include "second.h"
 #include "shoal/comms/memory_bus.h"
 
 namespace shoal::comms {
 namespace {
 
 constexpr int64_t kMs = 1000;
-constexpr int64_t kSecond = 1'000'000;
-
 // A message for these tests: when it was sent, its number and where its sender is.
 struct Words {
   int64_t sent_us;
@@ -29,7 +28,7 @@ struct Words {
   double x_m;
 };
 
-Packet packet(const std::string& node, int64_t sent_us, int64_t number, double x_m = 0) {
+Packet packetFrom(const std::string& node, int64_t sent_us, int64_t number, double x_m = 0) {
   const Words words{sent_us, number, x_m};
   Packet packet{"SHOAL_" + node + "_X", Bytes(sizeof words)};
   std::memcpy(packet.bytes.data(), &words, sizeof words);
@@ -57,7 +56,7 @@ struct Listener {
   }
 
   void say(int64_t sent_us, int64_t number, const std::string& node = "R00", double x_m = 0) {
-    speaker->publish(packet(node, sent_us, number, x_m));
+    speaker->publish(packetFrom(node, sent_us, number, x_m));
   }
 
   std::vector<int64_t> hear() {
@@ -235,7 +234,7 @@ TEST(LinkEmulatorTest, DoublesAsOftenAsTold) {
 
 // 1000 bytes per second, and datagrams of 24 bytes take 72 on the wire, so one every 72 ms.
 TEST(LinkEmulatorTest, TheRateSpreadsABurstAndDropsWhatWouldWaitTooLong) {
-  ASSERT_EQ(wireSize(packet("R00", 0, 0)), 72u);
+  ASSERT_EQ(wireSize(packetFrom("R00", 0, 0)), 72u);
   LinkModel model;
   model.rate_bytes_per_s = 1000;
   model.queue_s = 1;
@@ -281,7 +280,7 @@ TEST(LinkEmulatorTest, NothingIsHeardFromBeyondTheRange) {
   listener.say(0, 1, "R00", 100);
   listener.say(1, 2, "R00", 101);
   EXPECT_EQ(listener.hear(), std::vector<int64_t>{1});  // this node is at the base
-  listener.link.publish(packet("ME", 2, 3, 50));        // and now it is not
+  listener.link.publish(packetFrom("ME", 2, 3, 50));    // and now it is not
   listener.say(3, 4, "R00", 150);
   listener.say(4, 5, "R00", -51);
   EXPECT_EQ(listener.hear(), (std::vector<int64_t>{3, 4}));
@@ -300,7 +299,7 @@ TEST(LinkEmulatorTest, OneselfAndWhatIsNotOfTheLinkPass) {
   LinkModel model;
   model.loss = 1;
   Listener listener(model);
-  listener.link.publish(packet("ME", 0, 1));
+  listener.link.publish(packetFrom("ME", 0, 1));
   listener.say(0, 2, "ME");  // a twin: told to oneself as well
   listener.say(0, 3, "R00");
   listener.speaker->publish({"SHOAL_R00_X", {1, 2, 3}});  // rubbish, for the process to count
@@ -349,7 +348,8 @@ TEST(LinkEmulatorTest, AHandlerMayThrowAndPublish) {
   EXPECT_THROW(listener.link.receive(0, [](const Packet&) { throw std::runtime_error("no"); }),
                std::runtime_error);
   listener.say(1, 2);
-  EXPECT_EQ(listener.link.receive(0, [&](const Packet&) { listener.link.publish(packet("ME", 2, 3)); }), 1);
+  EXPECT_EQ(listener.link.receive(0, [&](const Packet&) { listener.link.publish(packetFrom("ME", 2, 3)); }),
+            1);
   EXPECT_EQ(listener.hear(), std::vector<int64_t>{3});
 }
 

@@ -14,7 +14,7 @@ Packet numbered(int n) {
   return {"SHOAL_R00_X", {static_cast<uint8_t>(n / 256), static_cast<uint8_t>(n % 256)}};
 }
 
-std::vector<int> hear(Bus& bus) {
+std::vector<int> hearNumbers(Bus& bus) {
   std::vector<int> numbers;
   bus.receive(0, [&](const Packet& packet) { numbers.push_back(packet.bytes[0] * 256 + packet.bytes[1]); });
   return numbers;
@@ -27,9 +27,9 @@ TEST(MemoryBusTest, EverybodyHearsEverybodyInOrder) {
   a->publish(numbered(1));
   b->publish(numbered(2));
   a->publish(numbered(3));
-  EXPECT_EQ(hear(*a), (std::vector{1, 2, 3}));
-  EXPECT_EQ(hear(*b), (std::vector{1, 2, 3}));
-  EXPECT_TRUE(hear(*b).empty());
+  EXPECT_EQ(hearNumbers(*a), (std::vector{1, 2, 3}));
+  EXPECT_EQ(hearNumbers(*b), (std::vector{1, 2, 3}));
+  EXPECT_TRUE(hearNumbers(*b).empty());
 }
 
 TEST(MemoryBusTest, AHandlerMayPublish) {
@@ -37,7 +37,7 @@ TEST(MemoryBusTest, AHandlerMayPublish) {
   const auto a = network.connect();
   a->publish(numbered(1));
   EXPECT_EQ(a->receive(0, [&](const Packet&) { a->publish(numbered(2)); }), 1);
-  EXPECT_EQ(hear(*a), std::vector{2});
+  EXPECT_EQ(hearNumbers(*a), std::vector{2});
 }
 
 TEST(MemoryBusTest, LosesDoublesAndReordersAsOftenAsToldAndAlikeForASeed) {
@@ -46,8 +46,8 @@ TEST(MemoryBusTest, LosesDoublesAndReordersAsOftenAsToldAndAlikeForASeed) {
     const auto a = network.connect();
     const auto b = network.connect();
     for (int n = 0; n < 10000; ++n) a->publish(numbered(n));
-    EXPECT_EQ(hear(*a).size(), 10000u);  // oneself without fail
-    return hear(*b);
+    EXPECT_EQ(hearNumbers(*a).size(), 10000u);  // oneself without fail
+    return hearNumbers(*b);
   };
   const std::vector<int> heard = run(1);
   EXPECT_EQ(heard, run(1));
@@ -66,12 +66,12 @@ TEST(MemoryBusTest, APartitionSeparatesUntilItHeals) {
   const auto c = network.connect();
   network.partition({0, 1, 0});
   a->publish(numbered(1));
-  EXPECT_EQ(hear(*a), std::vector{1});
-  EXPECT_TRUE(hear(*b).empty());
-  EXPECT_EQ(hear(*c), std::vector{1});
+  EXPECT_EQ(hearNumbers(*a), std::vector{1});
+  EXPECT_TRUE(hearNumbers(*b).empty());
+  EXPECT_EQ(hearNumbers(*c), std::vector{1});
   network.heal();
   b->publish(numbered(2));
-  EXPECT_EQ(hear(*a), std::vector{2});
+  EXPECT_EQ(hearNumbers(*a), std::vector{2});
 }
 
 TEST(MemoryBusTest, RejectsWhatIsNoNetwork) {

@@ -19,7 +19,7 @@
 namespace shoal::comms {
 namespace {
 
-SealKey keyOf(uint8_t first) {
+SealKey keyFrom(uint8_t first) {
   std::array<uint8_t, SealKey::kBytes> secret{};
   std::iota(secret.begin(), secret.end(), first);
   return SealKey(secret);
@@ -31,20 +31,20 @@ const Packet kHello{"SHOAL_R03_TOPICS", {'h', 'e', 'l', 'l', 'o'}};
 // blake2b(data, digest_size=16, key=bytes(range(32)), person=b"Shoal seal 1").digest()[:8]
 TEST(SealTest, IsWhatAnotherImplementationMakes) {
   Packet packet = kHello;
-  addSeal(keyOf(0), {0x01020304, 7}, packet);
+  addSeal(keyFrom(0), {0x01020304, 7}, packet);
   EXPECT_EQ(packet.bytes, (Bytes{'h', 'e', 'l',  'l',  'o',  1,    2,    3,    4,    0,   0,
                                  0,   7,   0xcd, 0x9c, 0x75, 0x58, 0xda, 0x66, 0xa1, 0xc4}));
-  EXPECT_EQ(keyOf(0).id(), "2dfd3d8b");
+  EXPECT_EQ(keyFrom(0).id(), "2dfd3d8b");
 }
 
 TEST(SealTest, IsRightForTheKeyThatMadeItAndComesOff) {
   Packet packet = kHello;
-  addSeal(keyOf(0), {5, 9}, packet);
-  const auto seal = checkSeal(keyOf(0), packet);
+  addSeal(keyFrom(0), {5, 9}, packet);
+  const auto seal = checkSeal(keyFrom(0), packet);
   ASSERT_TRUE(seal.has_value());
   EXPECT_EQ(seal->session, 5u);
   EXPECT_EQ(seal->counter, 9u);
-  EXPECT_FALSE(checkSeal(keyOf(1), packet).has_value());
+  EXPECT_FALSE(checkSeal(keyFrom(1), packet).has_value());
   const size_t size = wireSize(packet);
   removeSeal(packet);
   EXPECT_EQ(packet.bytes, kHello.bytes);
@@ -54,27 +54,27 @@ TEST(SealTest, IsRightForTheKeyThatMadeItAndComesOff) {
 TEST(SealTest, NoBitCanBeFlippedAndNoByteCut) {
   Packet sealed{"SHOAL_R03_TOPICS", {}};
   for (int i = 0; i < 300; ++i) sealed.bytes.push_back(static_cast<uint8_t>(i));
-  addSeal(keyOf(0), {5, 9}, sealed);
+  addSeal(keyFrom(0), {5, 9}, sealed);
   for (size_t bit = 0; bit < 8 * sealed.bytes.size(); ++bit) {
     Packet altered = sealed;
     altered.bytes[bit / 8] ^= static_cast<uint8_t>(1 << (bit % 8));
-    EXPECT_FALSE(checkSeal(keyOf(0), altered).has_value()) << bit;
+    EXPECT_FALSE(checkSeal(keyFrom(0), altered).has_value()) << bit;
   }
   for (size_t bit = 0; bit < 8 * sealed.channel.size(); ++bit) {
     Packet altered = sealed;
     altered.channel[bit / 8] = static_cast<char>(altered.channel[bit / 8] ^ 1 << (bit % 8));
-    EXPECT_FALSE(checkSeal(keyOf(0), altered).has_value()) << bit;
+    EXPECT_FALSE(checkSeal(keyFrom(0), altered).has_value()) << bit;
   }
   for (size_t size = 0; size < sealed.bytes.size(); ++size) {
     Packet cut{sealed.channel, Bytes(sealed.bytes.begin(), sealed.bytes.begin() + static_cast<long>(size))};
-    EXPECT_FALSE(checkSeal(keyOf(0), cut).has_value()) << size;
+    EXPECT_FALSE(checkSeal(keyFrom(0), cut).has_value()) << size;
     Packet behead{sealed.channel, Bytes(sealed.bytes.end() - static_cast<long>(size), sealed.bytes.end())};
-    EXPECT_FALSE(checkSeal(keyOf(0), behead).has_value()) << size;
+    EXPECT_FALSE(checkSeal(keyFrom(0), behead).has_value()) << size;
   }
   // Letters moved from the channel to the message: the channel's length is in the tag.
   Packet moved{"SHOAL_R03_TOPIC", sealed.bytes};
   moved.bytes.insert(moved.bytes.begin(), 'S');
-  EXPECT_FALSE(checkSeal(keyOf(0), moved).has_value());
+  EXPECT_FALSE(checkSeal(keyFrom(0), moved).has_value());
 }
 
 // Against the definition: new when never seen and less than kWidth below the greatest.
@@ -135,7 +135,7 @@ TEST_F(KeyFileTest, IsMadeForItsOwnerAloneAndReadBack) {
 }
 
 TEST_F(KeyFileTest, IsReadByItsDocumentedText) {
-  EXPECT_EQ(SealKey::read(write("shoal-key-1 " + digits_ + "\n")).id(), keyOf(0).id());
+  EXPECT_EQ(SealKey::read(write("shoal-key-1 " + digits_ + "\n")).id(), keyFrom(0).id());
   EXPECT_EQ(refusal(write("shoal-key-1 " + digits_ + "\n", 0400)), "");
 }
 

@@ -13,7 +13,7 @@
 namespace shoal::comms {
 namespace {
 
-Packet packet(const std::string& text, size_t size = 0) {
+Packet packetOf(const std::string& text, size_t size = 0) {
   Packet made{"SHOAL_R00_TOPICS", Bytes(text.begin(), text.end())};
   if (size > 0) made.bytes.resize(size);
   return made;
@@ -32,10 +32,10 @@ std::string take(SendQueue& queue, int64_t now_us = 0) {
 
 TEST(SendQueueTest, SendsInsideAClassInTheOrderOfTheFirstOffer) {
   SendQueue queue;
-  queue.offer(TrafficClass::kBricks, "z", packet("z1"));
-  queue.offer(TrafficClass::kBricks, "a", packet("a1"));
-  queue.offer(TrafficClass::kBricks, "m", packet("m1"));
-  queue.offer(TrafficClass::kBricks, "z", packet("z2"));  // keeps the place
+  queue.offer(TrafficClass::kBricks, "z", packetOf("z1"));
+  queue.offer(TrafficClass::kBricks, "a", packetOf("a1"));
+  queue.offer(TrafficClass::kBricks, "m", packetOf("m1"));
+  queue.offer(TrafficClass::kBricks, "z", packetOf("z2"));  // keeps the place
   EXPECT_EQ(queue.numWaiting(TrafficClass::kBricks), 3u);
   EXPECT_EQ(take(queue), "z2");
   EXPECT_EQ(take(queue), "a1");
@@ -45,10 +45,10 @@ TEST(SendQueueTest, SendsInsideAClassInTheOrderOfTheFirstOffer) {
 
 TEST(SendQueueTest, UtilityGoesFirstWhenAllIsNew) {
   SendQueue queue;
-  queue.offer(TrafficClass::kCertainty, "c", packet("c"));
-  queue.offer(TrafficClass::kBricks, "b", packet("b"));
-  queue.offer(TrafficClass::kTopics, "t", packet("t"));
-  queue.offer(TrafficClass::kMatches, "m", packet("m"));
+  queue.offer(TrafficClass::kCertainty, "c", packetOf("c"));
+  queue.offer(TrafficClass::kBricks, "b", packetOf("b"));
+  queue.offer(TrafficClass::kTopics, "t", packetOf("t"));
+  queue.offer(TrafficClass::kMatches, "m", packetOf("m"));
   EXPECT_EQ(take(queue), "m");
   EXPECT_EQ(take(queue), "t");
   EXPECT_EQ(take(queue), "b");
@@ -67,7 +67,7 @@ TEST(SendQueueTest, SharesTheBytesByWeightAndStarvesNobody) {
     for (const TrafficClass traffic : classes) {  // always something new in each
       while (queue.numWaiting(traffic) < 2) {
         const std::string key = std::to_string(n++);
-        queue.offer(traffic, key, packet(key, 100 + random.below(1200)));
+        queue.offer(traffic, key, packetOf(key, 100 + random.below(1200)));
       }
     }
     const auto next = queue.next(0);
@@ -85,10 +85,10 @@ TEST(SendQueueTest, SharesTheBytesByWeightAndStarvesNobody) {
 TEST(SendQueueTest, AnIdleClassSavesNothingUp) {
   SendQueue queue;
   for (int i = 0; i < 100; ++i)
-    queue.offer(TrafficClass::kTopics, "t" + std::to_string(i), packet("t" + std::to_string(i)));
+    queue.offer(TrafficClass::kTopics, "t" + std::to_string(i), packetOf("t" + std::to_string(i)));
   for (int i = 0; i < 50; ++i) take(queue);
   for (int i = 0; i < 50; ++i)
-    queue.offer(TrafficClass::kMatches, "m" + std::to_string(i), packet("m" + std::to_string(i)));
+    queue.offer(TrafficClass::kMatches, "m" + std::to_string(i), packetOf("m" + std::to_string(i)));
   int topics = 0;
   for (int i = 0; i < 20; ++i) topics += take(queue).starts_with("t") ? 1 : 0;
   EXPECT_NEAR(topics, 10, 1);
@@ -96,7 +96,7 @@ TEST(SendQueueTest, AnIdleClassSavesNothingUp) {
 
 TEST(SendQueueTest, SendsEverythingAgainRoundAndRoundWhenNothingNewWaits) {
   SendQueue queue({.min_resend_interval_us = 1, .max_resends = 1000});
-  for (const char* key : {"a", "b", "c"}) queue.offer(TrafficClass::kTopics, key, packet(key));
+  for (const char* key : {"a", "b", "c"}) queue.offer(TrafficClass::kTopics, key, packetOf(key));
   std::string sent;
   for (int now_us = 0; now_us < 9; ++now_us) sent += take(queue, now_us) + ",";
   EXPECT_EQ(sent, "a,b,c,a again,b again,c again,a again,b again,c again,");
@@ -104,11 +104,11 @@ TEST(SendQueueTest, SendsEverythingAgainRoundAndRoundWhenNothingNewWaits) {
 
 TEST(SendQueueTest, NewContentInterruptsTheRotation) {
   SendQueue queue({.min_resend_interval_us = 1, .max_resends = 1000});
-  for (const char* key : {"a", "b", "c"}) queue.offer(TrafficClass::kTopics, key, packet(key));
+  for (const char* key : {"a", "b", "c"}) queue.offer(TrafficClass::kTopics, key, packetOf(key));
   for (int i = 0; i < 4; ++i) take(queue, i);
-  queue.offer(TrafficClass::kCertainty, "new", packet("new"));
-  queue.offer(TrafficClass::kTopics, "b", packet("b2"));
-  EXPECT_EQ(queue.waitingBytes(), static_cast<int64_t>(wireSize(packet("new")) + wireSize(packet("b2"))));
+  queue.offer(TrafficClass::kCertainty, "new", packetOf("new"));
+  queue.offer(TrafficClass::kTopics, "b", packetOf("b2"));
+  EXPECT_EQ(queue.waitingBytes(), static_cast<int64_t>(wireSize(packetOf("new")) + wireSize(packetOf("b2"))));
   std::string sent;
   for (int i = 4; i < 10; ++i) sent += take(queue, i) + ",";
   EXPECT_EQ(sent, "b2,new,c again,a again,b2 again,new again,");
@@ -117,7 +117,7 @@ TEST(SendQueueTest, NewContentInterruptsTheRotation) {
 TEST(SendQueueTest, SendsNothingAgainTooSoon) {
   SendQueue queue({.min_resend_interval_us = 1000, .max_resends = 1000});
   EXPECT_EQ(queue.nextResend(), std::nullopt);
-  queue.offer(TrafficClass::kTopics, "a", packet("a"));
+  queue.offer(TrafficClass::kTopics, "a", packetOf("a"));
   EXPECT_EQ(take(queue, 50), "a");
   EXPECT_EQ(queue.nextResend(), 1050);
   EXPECT_EQ(take(queue, 1049), "");
@@ -126,18 +126,18 @@ TEST(SendQueueTest, SendsNothingAgainTooSoon) {
 
 TEST(SendQueueTest, TheSameContentIsNotNew) {
   SendQueue queue;
-  queue.offer(TrafficClass::kTopics, "a", packet("a"));
+  queue.offer(TrafficClass::kTopics, "a", packetOf("a"));
   take(queue);
-  queue.offer(TrafficClass::kTopics, "a", packet("a"));
+  queue.offer(TrafficClass::kTopics, "a", packetOf("a"));
   EXPECT_EQ(queue.numWaiting(TrafficClass::kTopics), 0u);
   EXPECT_EQ(take(queue), "");
 }
 
 TEST(SendQueueTest, ForgetsWaitingAndSentContent) {
   SendQueue queue({.min_resend_interval_us = 1, .max_resends = 1000});
-  queue.offer(TrafficClass::kTopics, "a", packet("a"));
+  queue.offer(TrafficClass::kTopics, "a", packetOf("a"));
   take(queue);
-  queue.offer(TrafficClass::kTopics, "b", packet("b"));
+  queue.offer(TrafficClass::kTopics, "b", packetOf("b"));
   queue.forget("a");
   queue.forget("b");
   queue.forget("never there");
@@ -167,7 +167,7 @@ TEST(SendQueueTest, CountsWhatWaitsExactly) {
       }
       default: {
         const auto traffic = static_cast<TrafficClass>(1 + k % 4);
-        const Packet content = packet(std::to_string(i), 10 + random.below(100));
+        const Packet content = packetOf(std::to_string(i), 10 + random.below(100));
         queue.offer(traffic, key, content);
         waiting[key] = {traffic, wireSize(content)};
       }
@@ -186,12 +186,12 @@ TEST(SendQueueTest, CountsWhatWaitsExactly) {
 
 TEST(SendQueueTest, RejectsWhatItCannotQueue) {
   SendQueue queue;
-  EXPECT_THROW(queue.offer(TrafficClass::kHeartbeat, "a", packet("a")), std::invalid_argument);
-  EXPECT_THROW(queue.offer(TrafficClass::kLocal, "a", packet("a")), std::invalid_argument);
+  EXPECT_THROW(queue.offer(TrafficClass::kHeartbeat, "a", packetOf("a")), std::invalid_argument);
+  EXPECT_THROW(queue.offer(TrafficClass::kLocal, "a", packetOf("a")), std::invalid_argument);
   const size_t fits = kMaxMessageBytes - 8 - 16 - 1;  // the channel has 16 letters
-  queue.offer(TrafficClass::kTopics, "a", packet("a", fits));
-  EXPECT_THROW(queue.offer(TrafficClass::kTopics, "b", packet("b", fits + 1)), std::invalid_argument);
-  EXPECT_THROW(queue.offer(TrafficClass::kBricks, "a", packet("a")), std::invalid_argument);
+  queue.offer(TrafficClass::kTopics, "a", packetOf("a", fits));
+  EXPECT_THROW(queue.offer(TrafficClass::kTopics, "b", packetOf("b", fits + 1)), std::invalid_argument);
+  EXPECT_THROW(queue.offer(TrafficClass::kBricks, "a", packetOf("a")), std::invalid_argument);
   EXPECT_THROW(SendQueue({.bricks_weight = 0}), std::invalid_argument);
   EXPECT_THROW(SendQueue({.min_resend_interval_us = 0}), std::invalid_argument);
 }

@@ -11,14 +11,13 @@
 #include <gtest/gtest.h>
 
 #include "fake_wall.h"
+#include "second.h"
 #include "shoal/comms/memory_bus.h"
 #include "shoal/comms/window_meter.h"
 #include "shoal/random.h"
 
 namespace shoal::comms {
 namespace {
-
-constexpr int64_t kSecond = 1'000'000;
 
 Packet packet(const std::string& channel, size_t size, uint8_t fill = 0) {
   return {channel, Bytes(size, fill)};

@@ -7,12 +7,11 @@
 
 #include <gtest/gtest.h>
 
+#include "second.h"
 #include "shoal/random.h"
 
 namespace shoal::comms {
 namespace {
-
-constexpr int64_t kSecond = 1'000'000;
 
 TEST(WindowMeterTest, MeasuresWindowsWorkedByHand) {
   WindowMeter meter(100);

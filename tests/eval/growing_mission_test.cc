@@ -24,20 +24,20 @@ using world::RobotId;
 using world::TopicId;
 using Topic = std::pair<RobotId, TopicId>;
 
-constexpr int32_t kRobots = 4, kImages = 16, kEvery = 2;
+constexpr int32_t kTeam = 4, kImages = 16, kEvery = 2;
 constexpr int32_t kLater = 4;  // a robot takes off so many images after the one before
 
 // What each robot believes after every second image of its own, in mission time.
 std::vector<std::vector<mapping::LocalBelief>> flights(uint64_t seed) {
   const auto place = world::openPlace("reef:tuning", seed);
   world::SurveyOptions survey;
-  survey.num_robots = kRobots;
+  survey.num_robots = kTeam;
   survey.observations = kImages;
   TeamWords words = lookAround(*place, seed, survey, "best", {});
   std::vector<int32_t> checkpoints(kImages / kEvery);
   for (size_t i = 0; i < checkpoints.size(); ++i) checkpoints[i] = kEvery * (static_cast<int32_t>(i) + 1);
   std::vector<std::vector<mapping::LocalBelief>> all;
-  for (int32_t r = 0; r < kRobots; ++r) {
+  for (int32_t r = 0; r < kTeam; ++r) {
     auto& images = words.robots[static_cast<size_t>(r)];
     for (world::WordsInCells& image : images) image.time.us += int64_t{1'000'000} * kLater * r;
     all.push_back(learn(images, RobotId{r}, words.cell_size_m,
@@ -75,12 +75,12 @@ TEST(GrowingMissionTest, ALabelLivesAsLongAsItsOldestTopic) {
     const auto robots = flights(seed);
     mapping::BeliefStore beliefs;
     mapping::FusedMap map;
-    std::vector<mapping::BeliefChanges> changes(kRobots);
+    std::vector<mapping::BeliefChanges> changes(kTeam);
     std::map<world::CellIndex, std::pair<Topic, GlobalLabel>> before;
     std::map<GlobalLabel, Topic> oldest_before;
-    for (int32_t now = kEvery; now <= kImages + kLater * (kRobots - 1); now += kEvery) {
+    for (int32_t now = kEvery; now <= kImages + kLater * (kTeam - 1); now += kEvery) {
       std::map<world::CellIndex, Topic> shown;  // robots' shares do not overlap: no robot overrules another
-      for (int32_t r = 0; r < kRobots; ++r) {
+      for (int32_t r = 0; r < kTeam; ++r) {
         const int32_t flown = std::min(now - kLater * r, kImages);
         if (flown <= 0) continue;
         const auto& belief = robots[static_cast<size_t>(r)][static_cast<size_t>(flown / kEvery - 1)];

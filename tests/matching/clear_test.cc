@@ -24,13 +24,13 @@ namespace {
 // A mission in which `num_robots` robots each see the same `num_classes`
 // classes, one topic per class. Vertex r * num_classes + c is robot r's topic
 // for class c, so the right answer is label(v) == v % num_classes, up to names.
-struct Mission {
+struct ClassMission {
   AssociationGraph graph;
   std::vector<int> truth;
 };
 
-Mission makeMission(int num_robots, int num_classes) {
-  Mission m;
+ClassMission makeMission(int num_robots, int num_classes) {
+  ClassMission m;
   m.graph.num_topics.assign(static_cast<size_t>(num_robots), num_classes);
   const int n = num_robots * num_classes;
   for (int v = 0; v < n; ++v) {
@@ -64,7 +64,7 @@ TEST(NormalizedLaplacianTest, MatchesThePathWorkedByHand) {
 // A cluster graph is its own nearest cluster graph.
 TEST(RectifyTest, LeavesAClusterGraphAsItIs) {
   for (int num_robots : {1, 2, 5, 12}) {
-    const Mission m = makeMission(num_robots, 6);
+    const ClassMission m = makeMission(num_robots, 6);
     EXPECT_TRUE(sameGrouping(rectify(m.graph).label, m.truth)) << num_robots << " robots";
   }
 }
@@ -72,7 +72,7 @@ TEST(RectifyTest, LeavesAClusterGraphAsItIs) {
 // The claim of the paper: redundant edges of other robots outvote wrong ones.
 // A chain of wrong matches that connected components would follow is cut.
 TEST(RectifyTest, OutvotesAWrongEdge) {
-  Mission m = makeMission(5, 3);
+  ClassMission m = makeMission(5, 3);
   removeEdge(m.graph, 0, 3);        // robot 0 "sand" !~ robot 1 "sand"
   m.graph.edges.push_back({0, 4});  // robot 0 "sand"  ~ robot 1 "coral"
   EXPECT_TRUE(sameGrouping(rectify(m.graph).label, m.truth));
@@ -80,7 +80,7 @@ TEST(RectifyTest, OutvotesAWrongEdge) {
 
 // A phenomenon that one robot alone saw keeps a label of its own.
 TEST(RectifyTest, KeepsATopicThatNobodyElseHas) {
-  Mission m = makeMission(3, 2);
+  ClassMission m = makeMission(3, 2);
   m.graph.num_topics.back() += 1;
   m.truth.push_back(2);
   EXPECT_TRUE(sameGrouping(rectify(m.graph).label, m.truth));
@@ -88,7 +88,7 @@ TEST(RectifyTest, KeepsATopicThatNobodyElseHas) {
 
 // A robot's own topics never match each other, whatever the graph says.
 TEST(RectifyTest, IgnoresEdgesWithinOneRobot) {
-  Mission m = makeMission(2, 2);
+  ClassMission m = makeMission(2, 2);
   m.graph.edges.push_back({0, 1});
   m.graph.edges.push_back({2, 3});  // now one 4-clique
   EXPECT_TRUE(sameGrouping(rectify(m.graph).label, m.truth));

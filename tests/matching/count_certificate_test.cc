@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::MatrixXd;
 
-constexpr double kBound = .5 + 1e-6;
+constexpr double kAbove = .5 + 1e-6;
 
 MatrixXd without(const MatrixXd& vectors, Eigen::Index left_out) {
   MatrixXd rest(vectors.rows(), vectors.cols() - 1);
@@ -29,11 +29,11 @@ TEST(RestOfSpectrumTest, MissesAnyPairThatIsHeldBack) {
     matrices.push_back(complement(makeNoisyGraph(12, 10, noise, noise, 7).graph));
   }
   for (const auto& matrix : matrices) {
-    const MatrixXd found = denseEigenpairsAbove(matrix, kBound).vectors;
+    const MatrixXd found = denseEigenpairsAbove(matrix, kAbove).vectors;
     ASSERT_GT(found.cols(), 1);
-    EXPECT_EQ(restOfSpectrum(matrix, found, kBound), Rest::kBelow);
+    EXPECT_EQ(restOfSpectrum(matrix, found, kAbove), Rest::kBelow);
     for (Eigen::Index k = 0; k < found.cols(); ++k) {
-      EXPECT_EQ(restOfSpectrum(matrix, without(found, k), kBound), Rest::kAbove) << k;
+      EXPECT_EQ(restOfSpectrum(matrix, without(found, k), kAbove), Rest::kAbove) << k;
     }
   }
 }

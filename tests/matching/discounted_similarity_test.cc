@@ -13,7 +13,7 @@
 namespace shoal::matching {
 namespace {
 
-Descriptor descriptor(const std::vector<int64_t>& weights) {
+Descriptor descriptorOf(const std::vector<int64_t>& weights) {
   Descriptor d;
   for (size_t w = 0; w < weights.size(); ++w)
     if (weights[w] > 0) d.entries.push_back({static_cast<int32_t>(w), weights[w]});
@@ -56,7 +56,7 @@ TEST(DiscountedSimilarityTest, IsWhatItsDefinitionSays) {
     DescriptorSet set{9, {0, 4}, {{}, {}}};
     for (size_t t = 0; t < topics.size(); ++t) {
       for (size_t w = t == 3 ? 4 : 0; w < 9; ++w) topics[t][w] = static_cast<int64_t>(random.below(400));
-      set.robots[t / 3].push_back(descriptor(topics[t]));
+      set.robots[t / 3].push_back(descriptorOf(topics[t]));
     }
     const PairTable table = discountedSimilarity(set);
     for (size_t i = 0; i < topics.size(); ++i)
@@ -118,7 +118,7 @@ TEST(DiscountedSimilarityTest, IsTheSameToTheLastUnitHoweverItIsWorkedOut) {
       const uint64_t most = uint64_t{1} << (4 * random.below(12));
       for (size_t w = random.below(3) == 0 ? split : 0; w < words && most > 1; ++w)
         if (random.below(3) > 0) topic[w] = static_cast<int64_t>(random.below(most));
-      set.robots[0].push_back(descriptor(topic));
+      set.robots[0].push_back(descriptorOf(topic));
     }
     const PairTable table = discountedSimilarity(set), plain = inWholeNumbers(topics, split);
     for (int i = 0; i < table.size(); ++i)
@@ -131,7 +131,7 @@ TEST(DiscountedSimilarityTest, TakesTheBackgroundFromWhatTopicsShare) {
   const DescriptorSet set{
       4,
       {},
-      {{descriptor({900, 100, 0, 0})}, {descriptor({900, 0, 100, 0})}, {descriptor({900, 0, 100, 1})}}};
+      {{descriptorOf({900, 100, 0, 0})}, {descriptorOf({900, 0, 100, 0})}, {descriptorOf({900, 0, 100, 1})}}};
   const PairTable table = discountedSimilarity(set);
   EXPECT_LT(table.at(0, 1), 0);
   EXPECT_LT(table.at(0, 2), 0);
@@ -140,16 +140,16 @@ TEST(DiscountedSimilarityTest, TakesTheBackgroundFromWhatTopicsShare) {
 
 TEST(DiscountedSimilarityTest, TellsTwoTopicsAloneWhetherTheyAreAlike) {
   const PairTable alike =
-      discountedSimilarity({3, {}, {{descriptor({900, 100, 0})}, {descriptor({880, 120, 0})}}});
+      discountedSimilarity({3, {}, {{descriptorOf({900, 100, 0})}, {descriptorOf({880, 120, 0})}}});
   EXPECT_GT(alike.at(0, 1), 900'000'000);
   const PairTable other =
-      discountedSimilarity({3, {}, {{descriptor({900, 100, 0})}, {descriptor({0, 100, 900})}}});
+      discountedSimilarity({3, {}, {{descriptorOf({900, 100, 0})}, {descriptorOf({0, 100, 900})}}});
   EXPECT_LT(other.at(0, 1), 100'000'000);
 }
 
 TEST(DiscountedSimilarityTest, CallsATopicWithoutWordsUnlikeAll) {
   const PairTable table =
-      discountedSimilarity({2, {}, {{descriptor({5, 1}), descriptor({})}, {descriptor({})}}});
+      discountedSimilarity({2, {}, {{descriptorOf({5, 1}), descriptorOf({})}, {descriptorOf({})}}});
   EXPECT_EQ(table.at(0, 1), 0);
   EXPECT_EQ(table.at(1, 2), 0);
 }
@@ -159,10 +159,10 @@ TEST(DiscountedSimilarityTest, TrustsFewWordsLess) {
   // background.
   const DescriptorSet set{4,
                           {0, 2},
-                          {{descriptor({500, 0, 500, 0})},
-                           {descriptor({0, 500, 0, 500})},
-                           {descriptor({0, 500, 500, 0})},
-                           {descriptor({0, 4, 500, 0})}}};
+                          {{descriptorOf({500, 0, 500, 0})},
+                           {descriptorOf({0, 500, 0, 500})},
+                           {descriptorOf({0, 500, 500, 0})},
+                           {descriptorOf({0, 4, 500, 0})}}};
   const PairTable table = discountedSimilarity(set);
   EXPECT_GT(table.at(0, 3), table.at(0, 2));
 }

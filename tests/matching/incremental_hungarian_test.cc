@@ -15,15 +15,15 @@ namespace {
 
 Descriptor topic(const std::vector<Descriptor::Entry>& entries) { return {0, entries}; }
 
-const Descriptor kSand = topic({{0, 9}, {1, 1}});
-const Descriptor kCoral = topic({{2, 4}, {3, 4}});
+const Descriptor kFineSand = topic({{0, 9}, {1, 1}});
+const Descriptor kRedCoral = topic({{2, 4}, {3, 4}});
 const Descriptor kKelp = topic({{4, 7}});
 
 DescriptorSet robots(std::vector<std::vector<Descriptor>> all) { return {8, {}, std::move(all)}; }
 
 // What robot 1 finds new, robot 2 can join: where the paper's sequential baseline fails.
 TEST(MatchIncrementallyTest, JoinsWhatALaterRobotFoundNew) {
-  const DescriptorSet topics = robots({{kSand}, {kCoral, kSand}, {kKelp, kCoral}});
+  const DescriptorSet topics = robots({{kFineSand}, {kRedCoral, kFineSand}, {kKelp, kRedCoral}});
   EXPECT_EQ(matchIncrementally(topics, &cosine, .75).label, (std::vector{0, 1, 0, 2, 1}));
 }
 
@@ -37,7 +37,7 @@ TEST(MatchIncrementallyTest, OpensALabelBelowSigmaAndJoinsAtSigma) {
 // One thing in two colours: robot 1 brings both, and only one of them can have the label.
 TEST(MatchIncrementallyTest, KeepsTheTopicsOfOneRobotApart) {
   const Descriptor dark_sand = topic({{0, 8}, {1, 2}});
-  EXPECT_EQ(matchIncrementally(robots({{kSand}, {dark_sand, kSand}}), &cosine, .75).label,
+  EXPECT_EQ(matchIncrementally(robots({{kFineSand}, {dark_sand, kFineSand}}), &cosine, .75).label,
             (std::vector{0, 1, 0}));
 }
 

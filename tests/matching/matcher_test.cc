@@ -17,15 +17,15 @@ namespace {
 
 // Robots that see most of six classes, each class ten words of its own and five of the background, in an
 // order of their own; `noise` words go anywhere.
-struct Mission {
+struct NoisyMission {
   DescriptorSet topics;
   std::vector<int> truth;
   std::vector<int> owner;
 };
 
-Mission makeMission(int num_robots, uint64_t seed, int noise) {
+NoisyMission makeMission(int num_robots, uint64_t seed, int noise) {
   Random random(seed);
-  Mission mission;
+  NoisyMission mission;
   mission.topics.vocabulary_size = 65;
   for (int robot = 0; robot < num_robots; ++robot) {
     std::vector<Descriptor>& own = mission.topics.robots.emplace_back();
@@ -65,7 +65,8 @@ INSTANTIATE_TEST_SUITE_P(All, MatcherLaws, ::testing::ValuesIn(matcherNames()),
 TEST_P(MatcherLaws, GivesEveryTopicOneLabelAndEqualInputEqualOutput) {
   for (uint64_t seed = 0; seed < 20; ++seed) {
     SCOPED_TRACE(seed);
-    const Mission mission = makeMission(1 + static_cast<int>(seed % 8), seed, 10 * static_cast<int>(seed));
+    const NoisyMission mission =
+        makeMission(1 + static_cast<int>(seed % 8), seed, 10 * static_cast<int>(seed));
     const Clustering clustering = match(mission.topics, optionsFor(GetParam()));
     ASSERT_EQ(clustering.label.size(), mission.truth.size());
     int next = 0;  // numbered by first appearance
@@ -83,7 +84,7 @@ TEST_P(MatcherLaws, GivesEveryTopicOneLabelAndEqualInputEqualOutput) {
 }
 
 TEST_P(MatcherLaws, TreatsRobotsWithoutTopicsAsAbsent) {
-  const Mission mission = makeMission(5, 42, 20);
+  const NoisyMission mission = makeMission(5, 42, 20);
   DescriptorSet padded = mission.topics;
   padded.robots.insert(padded.robots.begin() + 2, std::vector<Descriptor>{});
   padded.robots.insert(padded.robots.begin(), std::vector<Descriptor>{});
@@ -105,7 +106,7 @@ TEST_P(MatcherLaws, RejectsDescriptorsThatAreNone) {
 TEST(MatchTest, KeepsTopicsWithoutWordsOutOfIt) {
   for (const std::string matcher : {"hungarian", "incremental", "components", "clear", "shoal"}) {
     SCOPED_TRACE(matcher);
-    const Mission mission = makeMission(4, 9, 0);
+    const NoisyMission mission = makeMission(4, 9, 0);
     DescriptorSet with_empty = mission.topics;
     for (std::vector<Descriptor>& robot : with_empty.robots) robot.insert(robot.begin(), {99, {}});
     const Clustering without = match(mission.topics, optionsFor(matcher));
@@ -127,7 +128,7 @@ TEST(MatchTest, KeepsTopicsWithoutWordsOutOfIt) {
 TEST(MatchTest, ClearAndShoalFindTheClassesBehindCleanTopics) {
   for (uint64_t seed = 0; seed < 20; ++seed) {
     SCOPED_TRACE(seed);
-    const Mission mission = makeMission(8, seed / 2, 5);
+    const NoisyMission mission = makeMission(8, seed / 2, 5);
     const Clustering clustering = match(mission.topics, optionsFor(seed % 2 == 0 ? "clear" : "shoal"));
     std::set<std::pair<int, int>> pairs;
     for (size_t v = 0; v < mission.truth.size(); ++v) pairs.emplace(clustering.label[v], mission.truth[v]);
@@ -138,7 +139,7 @@ TEST(MatchTest, ClearAndShoalFindTheClassesBehindCleanTopics) {
 }
 
 // The share of pairs of different robots on which a clustering and the truth agree.
-double randIndex(const Clustering& clustering, const Mission& mission) {
+double randIndex(const Clustering& clustering, const NoisyMission& mission) {
   int agree = 0;
   int all = 0;
   for (size_t v = 0; v < mission.truth.size(); ++v) {
@@ -155,7 +156,7 @@ double randIndex(const Clustering& clustering, const Mission& mission) {
 TEST(MatchTest, TheIncrementalHungarianBeatsTheSequentialOne) {
   double incremental = 0, sequential = 0;
   for (uint64_t seed = 0; seed < 10; ++seed) {
-    const Mission mission = makeMission(8, seed, 40);
+    const NoisyMission mission = makeMission(8, seed, 40);
     incremental += randIndex(match(mission.topics, optionsFor("incremental")), mission) / 10;
     sequential += randIndex(match(mission.topics, optionsFor("hungarian")), mission) / 10;
   }
@@ -166,7 +167,7 @@ TEST(MatchTest, TheIncrementalHungarianBeatsTheSequentialOne) {
 TEST(MatchTest, ClearBeatsTheSequentialHungarianWhichBeatsIds) {
   double clear = 0, hungarian = 0, id = 0;
   for (uint64_t seed = 0; seed < 10; ++seed) {
-    const Mission mission = makeMission(8, seed, 40);
+    const NoisyMission mission = makeMission(8, seed, 40);
     clear += randIndex(match(mission.topics, optionsFor("clear")), mission) / 10;
     hungarian += randIndex(match(mission.topics, optionsFor("hungarian")), mission) / 10;
     id += randIndex(match(mission.topics, optionsFor("id")), mission) / 10;
@@ -188,7 +189,7 @@ TEST(MatchTest, MergesARobotsDuplicatesOnlyWhenAsked) {
 }
 
 TEST(MatchTest, ClearTakesTheDiscountedSimilarityToo) {
-  const Mission mission = makeMission(8, 3, 5);
+  const NoisyMission mission = makeMission(8, 3, 5);
   MatcherOptions options = optionsFor("clear");
   options.similarity = "discounted";
   options.sigma = .4;

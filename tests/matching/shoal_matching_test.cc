@@ -16,14 +16,14 @@ constexpr int kClasses = 5, kWords = 60;
 
 // Robots that have cut some of five classes into up to three topics each. A quarter of all words is common
 // ground.
-struct Mission {
+struct SeededMission {
   DescriptorSet topics;
   std::vector<int> truth;
 };
 
-Mission makeMission(uint64_t seed) {
+SeededMission makeMission(uint64_t seed) {
   Random random(seed);
-  Mission mission{{kWords, {0, 30}, {}}, {}};
+  SeededMission mission{{kWords, {0, 30}, {}}, {}};
   for (int robot = 0; robot < 6; ++robot) {
     std::vector<Descriptor>& own = mission.topics.robots.emplace_back();
     for (int c = 0; c < kClasses; ++c) {
@@ -49,14 +49,14 @@ Mission makeMission(uint64_t seed) {
 TEST(ShoalMatchingTest, PutsPiecesOfAClassTogetherAcrossRobotsAndWithinThem) {
   for (uint64_t seed = 0; seed < 20; ++seed) {
     SCOPED_TRACE(seed);
-    const Mission mission = makeMission(seed);
+    const SeededMission mission = makeMission(seed);
     const Clustering clustering = matchShoal(mission.topics, kShoalSigma, false);
     EXPECT_EQ(clustering.label, numberByFirstAppearance(mission.truth, kClasses).label);
   }
 }
 
 TEST(ShoalMatchingTest, KeepsARobotsLabelsApartWhenTold) {
-  const Mission mission = makeMission(4);
+  const SeededMission mission = makeMission(4);
   const Clustering clustering = matchShoal(mission.topics, kShoalSigma, true);
   size_t v = 0;
   for (const std::vector<Descriptor>& robot : mission.topics.robots) {
@@ -72,8 +72,8 @@ TEST(ShoalMatchingTest, KeepsARobotsLabelsApartWhenTold) {
 TEST(ShoalMatchingTest, GivesTheSameClustersToRobotsInAnyOrder) {
   for (uint64_t seed = 0; seed < 20; ++seed) {
     SCOPED_TRACE(seed);
-    const Mission mission = makeMission(seed);
-    Mission turned{{kWords, {0, 30}, {}}, {}};
+    const SeededMission mission = makeMission(seed);
+    SeededMission turned{{kWords, {0, 30}, {}}, {}};
     std::vector<size_t> from;  // vertex here -> vertex there
     std::vector<size_t> first(mission.topics.robots.size() + 1);
     for (size_t r = 0; r < mission.topics.robots.size(); ++r)

@@ -24,7 +24,7 @@ std::vector<BinaryWord> randomWords(size_t count, uint64_t seed) {
   return words;
 }
 
-std::string complaint(const std::function<void()>& action) {
+std::string complaintOf(const std::function<void()>& action) {
   try {
     action();
   } catch (const std::invalid_argument& error) {
@@ -59,7 +59,7 @@ TEST(VocabularyTest, RefusesEveryTruncationAndExtension) {
     EXPECT_THROW(Vocabulary::parse({bytes.data(), size}), std::invalid_argument) << size << " bytes";
   }
   bytes.push_back(0);
-  EXPECT_NE(complaint([&] { Vocabulary::parse(bytes); }).find("too long"), std::string::npos);
+  EXPECT_NE(complaintOf([&] { Vocabulary::parse(bytes); }).find("too long"), std::string::npos);
 }
 
 TEST(VocabularyTest, RefusesEveryFlippedBit) {
@@ -87,21 +87,21 @@ TEST(VocabularyTest, SaysWhatIsWrong) {
   const auto good = Vocabulary(randomWords(2, 5)).serialize();
   auto bytes = good;
   bytes[0] = 'X';
-  EXPECT_NE(complaint([&] { Vocabulary::parse(bytes); }).find("not a vocabulary"), std::string::npos);
+  EXPECT_NE(complaintOf([&] { Vocabulary::parse(bytes); }).find("not a vocabulary"), std::string::npos);
   bytes = good;
   bytes[8] = 2;
-  EXPECT_NE(complaint([&] { Vocabulary::parse(bytes); }).find("format version 2"), std::string::npos);
+  EXPECT_NE(complaintOf([&] { Vocabulary::parse(bytes); }).find("format version 2"), std::string::npos);
   bytes = good;
   bytes[30] ^= 1;
-  EXPECT_NE(complaint([&] { Vocabulary::parse(bytes); }).find("checksum"), std::string::npos);
-  EXPECT_NE(complaint([&] { Vocabulary::parse({good.data(), 60}); }).find("truncated"), std::string::npos);
+  EXPECT_NE(complaintOf([&] { Vocabulary::parse(bytes); }).find("checksum"), std::string::npos);
+  EXPECT_NE(complaintOf([&] { Vocabulary::parse({good.data(), 60}); }).find("truncated"), std::string::npos);
 }
 
 // A count that would overflow or exhaust memory is refused before anything is allocated.
 TEST(VocabularyTest, RefusesACountThatCannotBe) {
   auto bytes = Vocabulary(randomWords(2, 6)).serialize();
   for (size_t i = 16; i < 24; ++i) bytes[i] = 0xff;
-  EXPECT_NE(complaint([&] { Vocabulary::parse(bytes); }).find("claims"), std::string::npos);
+  EXPECT_NE(complaintOf([&] { Vocabulary::parse(bytes); }).find("claims"), std::string::npos);
   for (size_t i = 16; i < 24; ++i) bytes[i] = 0;
   EXPECT_THROW(Vocabulary::parse(bytes), std::invalid_argument);
 }

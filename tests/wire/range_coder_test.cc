@@ -26,7 +26,7 @@ Message randomMessage(int length, Random& random) {
   return message;
 }
 
-Bytes encode(const Message& message) {
+Bytes encoded(const Message& message) {
   std::array<AdaptiveBit, 40> models;
   Encoder encoder;
   for (const auto& [context, bit] : message.bits) {
@@ -43,7 +43,7 @@ TEST(RangeCoderTest, ReadsBackWhatItWrote) {
   Random random(1);
   for (int trial = 0; trial < 300; ++trial) {
     const Message message = randomMessage(trial * trial / 20, random);
-    const Bytes bytes = encode(message);
+    const Bytes bytes = encoded(message);
     std::array<AdaptiveBit, 40> models;
     Decoder decoder(bytes);
     for (const auto& [context, bit] : message.bits) {

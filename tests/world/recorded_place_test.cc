@@ -10,7 +10,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kWidth = 16, kHeight = 12;
+constexpr int kPictureWidth = 16, kPictureHeight = 12;
 
 // A recording of pictures one second apart from second 100: picture i has blue = i, depth 2 m + i cm, and
 // label i % 2; the camera is at x = i.
@@ -19,17 +19,22 @@ class Recorded {
   explicit Recorded(const WorldOnDisk& disk, std::string folder = "", int frames = 4)
       : disk_(disk), folder_(std::move(folder)), frames_(frames) {
     for (const char* kind : {"rgb", "depth", "labels"}) fs::create_directories(path() / kind);
-    camera = {{"width", kWidth}, {"height", kHeight}, {"fx", 20},           {"fy", 20},
-              {"cx", 7.5},       {"cy", 5.5},         {"depth_factor", 100}};
+    camera = {{"width", kPictureWidth},
+              {"height", kPictureHeight},
+              {"fx", 20},
+              {"fy", 20},
+              {"cx", 7.5},
+              {"cy", 5.5},
+              {"depth_factor", 100}};
     camera["classes"] = {{{"id", 0}, {"name", "sand"}, {"rgb", {1, 2, 3}}},
                          {{"id", 1}, {"name", "rock"}, {"rgb", {4, 5, 6}}}};
     writeCamera();
     std::string poses, rgb = "# timestamp filename\n";
     for (int i = 0; i < frames_; ++i) {
       const std::string name = stamp(i) + ".png";
-      picture("rgb/" + name, cv::Mat(kHeight, kWidth, CV_8UC3, cv::Scalar(i, 50, 60)));
-      picture("depth/" + name, cv::Mat(kHeight, kWidth, CV_16UC1, cv::Scalar(200 + i)));
-      picture("labels/" + name, cv::Mat(kHeight, kWidth, CV_8UC1, cv::Scalar(i % 2)));
+      picture("rgb/" + name, cv::Mat(kPictureHeight, kPictureWidth, CV_8UC3, cv::Scalar(i, 50, 60)));
+      picture("depth/" + name, cv::Mat(kPictureHeight, kPictureWidth, CV_16UC1, cv::Scalar(200 + i)));
+      picture("labels/" + name, cv::Mat(kPictureHeight, kPictureWidth, CV_8UC1, cv::Scalar(i % 2)));
       poses += stamp(i) + " " + std::to_string(i) + " 0 10 1 0 0 0\n";
       rgb += stamp(i) + " rgb/" + name + "\n";
     }
@@ -52,14 +57,14 @@ class Recorded {
   int frames_;
 };
 
-struct Flight {
+struct FlownPlace {
   std::vector<Observation> frames;
   std::string troubles;
 };
 
-Flight fly(const Place& place, const SurveyOptions& options = {}, int robot = 0, bool single = false) {
+FlownPlace fly(const Place& place, const SurveyOptions& options = {}, int robot = 0, bool single = false) {
   const auto source = place.source(options, robot, single);
-  Flight flight;
+  FlownPlace flight;
   while (auto frame = source->next()) flight.frames.push_back(std::move(*frame));
   flight.troubles = source->troubles();
   return flight;
@@ -79,7 +84,7 @@ TEST(RecordedPlaceTest, FliesEveryFrameFromTimeZero) {
   ASSERT_EQ(place->classes().size(), 2u);
   EXPECT_FALSE(place->extent());
   EXPECT_FALSE(place->hasFlatTruth());
-  const Flight flight = fly(*place);
+  const FlownPlace flight = fly(*place);
   ASSERT_EQ(flight.frames.size(), 4u);
   EXPECT_EQ(flight.troubles, "");
   for (int i = 0; i < 4; ++i) {
@@ -100,7 +105,7 @@ TEST(RecordedPlaceTest, FewerObservationsAreSpreadOverTheRecording) {
   const Recorded recorded(disk, "", 9);
   SurveyOptions options;
   options.observations = 3;
-  const Flight flight = fly(*openPlace(disk.folder().string()), options);
+  const FlownPlace flight = fly(*openPlace(disk.folder().string()), options);
   ASSERT_EQ(flight.frames.size(), 3u);
   EXPECT_EQ(flight.frames[1].time.us, 3'000'000);
   EXPECT_EQ(flight.frames[2].time.us, 6'000'000);
@@ -130,7 +135,7 @@ TEST(RecordedPlaceTest, ATeamIsFoldersByNumber) {
   EXPECT_EQ(fly(*place, options, 0).frames.size(), 2u);
   EXPECT_EQ(fly(*place, options, 1).frames.size(), 3u);
   EXPECT_THROW((void)place->source(options, 2), std::invalid_argument);
-  const Flight single = fly(*place, options, 0, true);
+  const FlownPlace single = fly(*place, options, 0, true);
   ASSERT_EQ(single.frames.size(), 5u);
   for (size_t i = 0; i < 5; ++i) EXPECT_EQ(single.frames[i].time.us, static_cast<int64_t>(i) * 1'000'000);
   options.num_robots = 3;
@@ -157,7 +162,7 @@ TEST(RecordedPlaceTest, PicturesPairWithWhatIsNearInTime) {
                 "102.01 depth/103.0.png\n"   // .01 s from 102: nearer than the next
                 "101.985 depth/102.0.png\n"
                 "103 depth/none.png\n");
-  const Flight flight = fly(*openPlace(disk.folder().string()));
+  const FlownPlace flight = fly(*openPlace(disk.folder().string()));
   ASSERT_EQ(flight.frames.size(), 2u);
   EXPECT_FLOAT_EQ(flight.frames[0].depth_m.at<float>(0, 0), 2.01f);
   EXPECT_EQ(flight.frames[0].time.us, 0);  // the first that flies
@@ -173,7 +178,7 @@ TEST(RecordedPlaceTest, PosesAreInterpolatedAndMissingOnesCounted) {
                 "100.9 3 0 10 1 0 0 0\n"
                 "103.015 8 0 10 1 0 0 0\n"
                 "broken\n");
-  const Flight flight = fly(*openPlace(disk.folder().string()));
+  const FlownPlace flight = fly(*openPlace(disk.folder().string()));
   ASSERT_EQ(flight.frames.size(), 2u);
   EXPECT_NEAR(flight.frames[0].world_from_camera.translation().x(), 4.0, 1e-9);
   EXPECT_NEAR(flight.frames[1].world_from_camera.translation().x(), 8.0, 1e-9);
@@ -184,11 +189,12 @@ TEST(RecordedPlaceTest, BadPicturesAreSkippedAndCounted) {
   const WorldOnDisk disk;
   const Recorded recorded(disk, "", 7);
   recorded.text("rgb/101.0.png", "no picture");
-  recorded.picture("rgb/102.0.png", cv::Mat(kHeight, kWidth + 1, CV_8UC3, cv::Scalar::all(1)));
-  recorded.picture("depth/103.0.png", cv::Mat(kHeight, kWidth, CV_8UC1, cv::Scalar(1)));
-  recorded.picture("depth/104.0.png", cv::Mat(kHeight / 2, kWidth / 2, CV_16UC1, cv::Scalar(1)));
-  recorded.picture("labels/105.0.png", cv::Mat(kHeight, kWidth, CV_8UC3, cv::Scalar::all(1)));
-  const Flight flight = fly(*openPlace(disk.folder().string()));
+  recorded.picture("rgb/102.0.png", cv::Mat(kPictureHeight, kPictureWidth + 1, CV_8UC3, cv::Scalar::all(1)));
+  recorded.picture("depth/103.0.png", cv::Mat(kPictureHeight, kPictureWidth, CV_8UC1, cv::Scalar(1)));
+  recorded.picture("depth/104.0.png",
+                   cv::Mat(kPictureHeight / 2, kPictureWidth / 2, CV_16UC1, cv::Scalar(1)));
+  recorded.picture("labels/105.0.png", cv::Mat(kPictureHeight, kPictureWidth, CV_8UC3, cv::Scalar::all(1)));
+  const FlownPlace flight = fly(*openPlace(disk.folder().string()));
   ASSERT_EQ(flight.frames.size(), 3u);
   EXPECT_EQ(flight.frames[1].number, 1);
   EXPECT_EQ(flight.frames[1].time.us, 5'000'000);
@@ -204,13 +210,13 @@ TEST(RecordedPlaceTest, NoDepthIsZeroAndWhatIsTooFarIsNone) {
   Recorded recorded(disk, "", 1);
   recorded.camera["max_depth_m"] = 5;
   recorded.writeCamera();
-  cv::Mat_<uint16_t> raw(kHeight, kWidth, uint16_t{300});
+  cv::Mat_<uint16_t> raw(kPictureHeight, kPictureWidth, uint16_t{300});
   raw(0, 0) = 0;
   raw(0, 1) = 65535;
   raw(0, 2) = 500;
   raw(0, 3) = 501;
   recorded.picture("depth/100.0.png", raw);
-  const Flight flight = fly(*openPlace(disk.folder().string()));
+  const FlownPlace flight = fly(*openPlace(disk.folder().string()));
   const cv::Mat& depth = flight.frames.at(0).depth_m;
   EXPECT_EQ(depth.at<float>(0, 0), 0.0f);
   EXPECT_EQ(depth.at<float>(0, 1), 0.0f);
@@ -224,11 +230,11 @@ TEST(RecordedPlaceTest, LabelsThatAreNoClassAreUnlabelled) {
   Recorded recorded(disk, "", 1);
   recorded.camera["unlabelled"] = 0;
   recorded.writeCamera();
-  recorded.picture("labels/100.0.png", cv::Mat_<uint8_t>(kHeight, kWidth, uint8_t{1}));
+  recorded.picture("labels/100.0.png", cv::Mat_<uint8_t>(kPictureHeight, kPictureWidth, uint8_t{1}));
   EXPECT_EQ(fly(*openPlace(disk.folder().string())).frames.at(0).labels.at<uint8_t>(0, 0), 1);
-  recorded.picture("labels/100.0.png", cv::Mat_<uint8_t>(kHeight, kWidth, uint8_t{0}));
+  recorded.picture("labels/100.0.png", cv::Mat_<uint8_t>(kPictureHeight, kPictureWidth, uint8_t{0}));
   EXPECT_EQ(fly(*openPlace(disk.folder().string())).frames.at(0).labels.at<uint8_t>(0, 0), 255);
-  recorded.picture("labels/100.0.png", cv::Mat_<uint8_t>(kHeight, kWidth, uint8_t{9}));
+  recorded.picture("labels/100.0.png", cv::Mat_<uint8_t>(kPictureHeight, kPictureWidth, uint8_t{9}));
   EXPECT_EQ(fly(*openPlace(disk.folder().string())).frames.at(0).labels.at<uint8_t>(0, 0), 255);
 }
 
@@ -241,7 +247,7 @@ TEST(RecordedPlaceTest, WithoutDepthTheFloorIsFlatAtTheAltitude) {
   options.altitude_m = 4;
   const auto place = openPlace(disk.folder().string());
   EXPECT_DOUBLE_EQ(place->completed(options).cell_size_m, 4.8);  // 24 px x 4 m / 20 px
-  const Flight flight = fly(*place, options);
+  const FlownPlace flight = fly(*place, options);
   ASSERT_EQ(flight.frames.size(), 4u);
   EXPECT_FLOAT_EQ(flight.frames[0].depth_m.at<float>(0, 0), 4.0f);
 }
@@ -250,9 +256,9 @@ TEST(RecordedPlaceTest, AGivenCameraSaysInstead) {
   const WorldOnDisk disk;
   const Recorded recorded(disk);
   Camera given;
-  given.intrinsics = {kWidth, kHeight, 40, 40, 7.5, 5.5};
+  given.intrinsics = {kPictureWidth, kPictureHeight, 40, 40, 7.5, 5.5};
   const auto place = openPlace(disk.folder().string(), 1, given);
-  const Flight flight = fly(*place);
+  const FlownPlace flight = fly(*place);
   EXPECT_EQ(flight.frames.at(0).intrinsics.fx, 40);
   EXPECT_FLOAT_EQ(flight.frames.at(0).depth_m.at<float>(0, 0), 2.0f);  // the folder's depth_factor
   fs::remove(disk.folder() / "camera.json");
@@ -286,9 +292,10 @@ TEST(RecordedPlaceTest, SaysWhatIsMissingOrWrong) {
   recorded.writeCamera();
   EXPECT_EQ(complaintOf(disk.folder()), "");
 
-  recorded.picture("depth/100.0.png", cv::Mat(kHeight * 2, kWidth * 2, CV_16UC1, cv::Scalar(1)));
+  recorded.picture("depth/100.0.png",
+                   cv::Mat(kPictureHeight * 2, kPictureWidth * 2, CV_16UC1, cv::Scalar(1)));
   EXPECT_NE(complaintOf(disk.folder()).find("depth/100.0.png: is 32 x 24 pixels"), std::string::npos);
-  recorded.picture("depth/100.0.png", cv::Mat(kHeight, kWidth, CV_16UC1, cv::Scalar(1)));
+  recorded.picture("depth/100.0.png", cv::Mat(kPictureHeight, kPictureWidth, CV_16UC1, cv::Scalar(1)));
   fs::remove(disk.folder() / "camera.json");
   EXPECT_NE(complaintOf(disk.folder()).find("camera.json: not found"), std::string::npos);
   recorded.writeCamera();

@@ -16,7 +16,7 @@
 namespace shoal::world {
 namespace {
 
-constexpr int kWidth = 64, kHeight = 48;
+constexpr int kSensorWidth = 64, kSensorHeight = 48;
 
 /// A camera that flies east, a metre a frame, over grey ground 8 m below with a step of 1 m in the middle.
 class Flight final : public ObservationSource {
@@ -26,12 +26,12 @@ class Flight final : public ObservationSource {
   static Observation frame(int32_t number) {
     Observation seen;
     seen.number = number;
-    seen.color = cv::Mat(kHeight, kWidth, CV_8UC3, cv::Scalar(100, 120, 60));
-    seen.depth_m = cv::Mat(kHeight, kWidth, CV_32FC1, cv::Scalar(8));
-    seen.depth_m.colRange(kWidth / 2, kWidth) = 7;
+    seen.color = cv::Mat(kSensorHeight, kSensorWidth, CV_8UC3, cv::Scalar(100, 120, 60));
+    seen.depth_m = cv::Mat(kSensorHeight, kSensorWidth, CV_32FC1, cv::Scalar(8));
+    seen.depth_m.colRange(kSensorWidth / 2, kSensorWidth) = 7;
     seen.depth_m.at<float>(0, 0) = 0;
-    seen.labels = cv::Mat(kHeight, kWidth, CV_8UC1, cv::Scalar(3));
-    seen.intrinsics = {kWidth, kHeight, 50, 50, 31.5, 23.5};
+    seen.labels = cv::Mat(kSensorHeight, kSensorWidth, CV_8UC1, cv::Scalar(3));
+    seen.intrinsics = {kSensorWidth, kSensorHeight, 50, 50, 31.5, 23.5};
     seen.world_from_camera = lookingDown({static_cast<double>(number), 0, 8});
     return seen;
   }
@@ -187,10 +187,10 @@ TEST(SensorsTest, MakeDepthNoisierTheFurtherItIs) {
   const cv::Mat depth_m = fly({.depth_noise = .02}, 1, 3, 1)[0].depth_m;
   EXPECT_EQ(depth_m.at<float>(0, 0), 0);  // none stays none
   cv::Scalar mean, deviation;
-  cv::meanStdDev(depth_m(cv::Rect(1, 1, kWidth / 2 - 1, kHeight - 1)), mean, deviation);
+  cv::meanStdDev(depth_m(cv::Rect(1, 1, kSensorWidth / 2 - 1, kSensorHeight - 1)), mean, deviation);
   EXPECT_NEAR(mean[0], 8, .02);
   EXPECT_NEAR(deviation[0], .16, .015);
-  cv::meanStdDev(depth_m.colRange(kWidth / 2, kWidth), mean, deviation);
+  cv::meanStdDev(depth_m.colRange(kSensorWidth / 2, kSensorWidth), mean, deviation);
   EXPECT_NEAR(mean[0], 7, .02);
   EXPECT_NEAR(deviation[0], .14, .015);
 }
@@ -200,18 +200,18 @@ TEST(SensorsTest, LoseDepthInPatchesAndAtJumps) {
   int borders = 0;  // between missing and present: few when patches are patches
   const auto seen = fly({.depth_holes = .2}, 1, 3, 60);
   for (const Observation& frame : seen) {
-    for (int v = 1; v < kHeight; ++v) {
-      EXPECT_EQ(frame.depth_m.at<float>(v, kWidth / 2 - 1), 0);
-      EXPECT_EQ(frame.depth_m.at<float>(v, kWidth / 2), 0);
-      for (int u = 1; u < kWidth / 2 - 1; ++u) {
+    for (int v = 1; v < kSensorHeight; ++v) {
+      EXPECT_EQ(frame.depth_m.at<float>(v, kSensorWidth / 2 - 1), 0);
+      EXPECT_EQ(frame.depth_m.at<float>(v, kSensorWidth / 2), 0);
+      for (int u = 1; u < kSensorWidth / 2 - 1; ++u) {
         const float d = frame.depth_m.at<float>(v, u);
         EXPECT_TRUE(d == 0 || d == 8) << d;
         lost += d == 0;
-        borders += (d == 0) != (frame.depth_m.at<float>(v, u + 1) == 0) && u + 2 < kWidth / 2;
+        borders += (d == 0) != (frame.depth_m.at<float>(v, u + 1) == 0) && u + 2 < kSensorWidth / 2;
       }
     }
   }
-  const double pixels = 60.0 * (kHeight - 1) * (kWidth / 2 - 2);
+  const double pixels = 60.0 * (kSensorHeight - 1) * (kSensorWidth / 2 - 2);
   EXPECT_NEAR(lost / pixels, .2, .06);
   EXPECT_LT(borders / pixels, .06);  // at random there would be 2 x .2 x .8
 }
