@@ -34,7 +34,7 @@ size_t trendTo(bool known, int height, int z) {
 std::pair<int, int> Occupancy::heights() const {
   uint16_t all = 0;
   for (const uint16_t column : columns_) all |= column;
-  if (all == 0) return {kEdge, -1};
+  if (all == 0) return {kBrickEdge, -1};
   return {std::countr_zero(all), static_cast<int>(std::bit_width(all)) - 1};
 }
 

@@ -16,8 +16,8 @@ namespace shoal::vision {
 namespace {
 
 // `per_cluster` points in a square of side 2 r + 1 around each centre.
-std::vector<int16_t> around(const std::vector<std::pair<int, int>>& centres, int per_cluster, int r,
-                            uint64_t seed) {
+std::vector<int16_t> pointsAround(const std::vector<std::pair<int, int>>& centres, int per_cluster, int r,
+                                  uint64_t seed) {
   Random random(seed);
   std::vector<int16_t> points;
   const auto noise = [&] { return static_cast<int>(random.below(static_cast<uint64_t>(2 * r + 1))) - r; };
@@ -32,7 +32,7 @@ std::vector<int16_t> around(const std::vector<std::pair<int, int>>& centres, int
 
 TEST(KMeansTest, FindsPlantedClusters) {
   const std::vector<std::pair<int, int>> centres{{-1000, 40}, {-300, -900}, {0, 0}, {500, 500}, {900, -20}};
-  const auto points = around(centres, 200, 30, 1);
+  const auto points = pointsAround(centres, 200, 30, 1);
   for (uint64_t seed = 1; seed <= 10; ++seed) {
     const auto result = kMeans(points, 2, {.num_words = 5, .max_rounds = 50, .seed = seed});
     ASSERT_EQ(result.words.size(), 10u);
@@ -56,7 +56,7 @@ TEST(KMeansTest, MakesAWordTheMeanOfItsMembers) {
 }
 
 TEST(KMeansTest, NeverGetsWorseFromRoundToRound) {
-  const auto points = around({{0, 0}, {300, 100}, {-200, 500}}, 400, 400, 3);
+  const auto points = pointsAround({{0, 0}, {300, 100}, {-200, 500}}, 400, 400, 3);
   double previous = 1e18;
   int rounds = 0;
   const auto result = kMeans(points, 2, {.num_words = 12, .max_rounds = 100, .seed = 4},
@@ -71,7 +71,7 @@ TEST(KMeansTest, NeverGetsWorseFromRoundToRound) {
 }
 
 TEST(KMeansTest, IsAFunctionOfPointsAndSeed) {
-  const auto points = around({{0, 0}, {300, 100}}, 300, 200, 5);
+  const auto points = pointsAround({{0, 0}, {300, 100}}, 300, 200, 5);
   const auto words = [&](uint64_t seed) {
     return kMeans(points, 2, {.num_words = 20, .max_rounds = 5, .seed = seed}).words;
   };
