@@ -7,6 +7,8 @@
 #include <chrono>
 #include <cmath>
 #include <iterator>
+#include <utility>
+
 #include <nlohmann/json.hpp>
 
 #include <spdlog/spdlog.h>
@@ -106,7 +108,7 @@ void Node::turn(int timeout_ms) {
   warnOfStrangers();
   checkLibrary();
   warnOfMixtures();
-  if (options_.rate == 0) clock_.advanceTo(state_.latestTime().us);
+  if (options_.rate == 0) follow(state_.latestTime().us);
 
   const int64_t wall = wallMs();
   if (state_.mapIsStale() && wall - fused_at_ms_ >= kFusePeriodMs) {
@@ -137,6 +139,13 @@ void Node::turn(int timeout_ms) {
   repair_.pump(now_us);
   sender_.pump(now_us);
   if (queries_) queries_->poll();
+}
+
+// Who came back knows what time it was when it last kept something, and not how long it was heard after that.
+void Node::follow(int64_t others_us) {
+  const bool goes_on = others_us > clock_.now();
+  clock_.advanceTo(others_us);
+  if (goes_on && std::exchange(came_back_, false)) sender_.assumeExhausted(others_us);
 }
 
 void Node::hear(const comms::Packet& packet) {
@@ -177,6 +186,8 @@ void Node::recall() {
   }
   const double passed_us = options_.rate * static_cast<double>(gap.us);
   clock_.advanceTo(clock->first + std::llround(passed_us));
+  sender_.assumeExhausted(clock_.now());
+  came_back_ = true;
   spdlog::info("comes back with {} pieces of {} robots, at {:.1f} s", state_.beliefs().numPieces(),
                state_.beliefs().robots().size(), static_cast<double>(clock_.now()) * 1e-6);
 }

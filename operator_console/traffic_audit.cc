@@ -46,11 +46,16 @@ std::vector<Gap> TrafficAudit::gapsOf(const Life& life) {
 std::vector<NodeTraffic> TrafficAudit::traffic() const {
   std::vector<NodeTraffic> traffic;
   for (const auto& [node, lives] : lives_) {
+    comms::WindowMeter meter(0);
+    int64_t budget = -1, last_us = 0;
     for (const Life& life : lives) {
-      comms::WindowMeter meter(life.budget);
+      const auto [first, last] = std::ranges::minmax(life.sent, {}, &Sent::at_us);
+      if (life.budget != budget || first.at_us < last_us) meter = comms::WindowMeter(life.budget);
+      budget = life.budget;
+      last_us = last.at_us;
       for (const Sent& sent : life.sent) meter.add(sent.at_us, sent.bytes);
-      traffic.push_back(
-          {node, life.pid, life.budget, life.bytes, life.sent.size(), meter.worst(), gapsOf(life)});
+      traffic.push_back({node, life.pid, life.budget, life.bytes, life.sent.size(), meter.worst(first.at_us),
+                         gapsOf(life)});
     }
   }
   return traffic;

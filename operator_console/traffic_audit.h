@@ -27,12 +27,14 @@ struct NodeTraffic {
   int64_t budget = 0;  ///< bytes/s, as its heartbeats say; 0 = unlimited
   int64_t bytes = 0;   ///< recorded, all headers counted
   size_t datagrams = 0;
-  comms::MeteredWindow worst;
+  comms::MeteredWindow
+      worst;  ///< of those that end in its life; what the process before it sent is in them too
   std::vector<Gap> gaps;
 };
 
 /// Meters what nodes put on the link, from a recording: against the budget that each says it has, and
-/// against the bytes that each says it has sent.
+/// against the bytes that each says it has sent. A process that takes the place of another at a later mission
+/// time has one budget with it; one whose mission time begins anew, or with another budget, has its own.
 class TrafficAudit {
  public:
   /// A message of the mission, in the order of the recording. Whole maps are not on the link: passed over.
@@ -56,7 +58,7 @@ class TrafficAudit {
     int32_t pid = 0;
     int64_t budget = 0;
     int64_t bytes = 0;
-    std::vector<Sent> sent;
+    std::vector<Sent> sent;  // never empty
     std::vector<Claim> claims;
   };
 

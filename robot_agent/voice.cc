@@ -60,6 +60,7 @@ Voice::Voice(const VoiceOptions& options, comms::Bus& bus, fusion_node::MissionS
       state_(state),
       sender_(bus, nullptr, senderOptions()) {
   bus.countInto(sender_.stats());
+  if (options_.resumed_at_us) sender_.assumeExhausted(*options_.resumed_at_us);
 }
 
 comms::SenderOptions Voice::senderOptions() {
@@ -72,7 +73,6 @@ comms::SenderOptions Voice::senderOptions() {
   sender.join = [this](std::span<const comms::SendQueue::Next> together) { return join(together); };
   sender.most_joined_bytes =
       mostBytesOn(channelOf(name_, wire::MessageKind::kCertainty), options_.budget, trailer_);
-  sender.resumed_at_us = options_.resumed_at_us;
   sender.make_heartbeat = [this](int64_t now_us) -> comms::Packet {
     const std::string channel = channelOf(name_, wire::MessageKind::kHeartbeat);
     return {channel, wire::encode(options_.make_heartbeat(now_us), wire::maxPayload(channel.size()))};

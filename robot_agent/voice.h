@@ -24,7 +24,7 @@ struct VoiceOptions {
   world::RobotId robot{};
   int32_t mission = 1;
   int64_t budget = 0;                         ///< bytes per second of mission time, 0 = unlimited
-  std::optional<int64_t> resumed_at_us = {};  ///< as of comms::SenderOptions
+  std::optional<int64_t> resumed_at_us = {};  ///< comes back, at this time
   /// Of this mission time, with what report() says of the voice.
   std::function<wire::Heartbeat(int64_t now_us)> make_heartbeat = {};
 };

@@ -27,9 +27,7 @@ Sender::Sender(Bus& link, Bus* local, SenderOptions options)
       queue_(options_.queue),
       heartbeat_(options_.bytes_per_s,
                  options_.make_heartbeat ? std::numeric_limits<int64_t>::min() : kNever),
-      pacer_(options_.pacing, options_.wall) {
-  if (options_.resumed_at_us) budget_.assumeExhausted(*options_.resumed_at_us, kMaxWireBytes);
-}
+      pacer_(options_.pacing, options_.wall) {}
 
 int64_t Sender::pump(int64_t now_us) {
   while (true) {

@@ -38,9 +38,6 @@ struct SenderOptions {
   /// they cannot share a datagram. Then more is said with fewer headers. None when empty.
   std::function<std::optional<Packet>(std::span<const SendQueue::Next> together)> join = {};
   size_t most_joined_bytes = 0;  ///< of a message that join() made; longer ones are not sent
-
-  /// The process came back after a crash and may have used its whole budget up to this mission time.
-  std::optional<int64_t> resumed_at_us = {};
 };
 
 /// The single choke point: everything a node sends passes here, is counted, and on the link kept in budget.
@@ -61,6 +58,10 @@ class Sender {
     queue_.offer(traffic, key, std::move(packet));
   }
   void forget(std::string_view key) { queue_.forget(key); }
+
+  /// The process came back, and the one before it may have used all of the budget up to this mission time:
+  /// nothing goes out before the worst of that is a matter of the past.
+  void assumeExhausted(int64_t at_us) { budget_.assumeExhausted(at_us, kMaxWireBytes); }
 
   /// Sends all that may go out at mission time now_us, and returns the mission time, > now_us, at which more
   /// could, or kNever. A budget in use is only used up when pump() is called again at that very time: callers

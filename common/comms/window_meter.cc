@@ -69,7 +69,7 @@ WindowMeter::WindowMeter(int64_t bytes_per_s) : bytes_per_s_(bytes_per_s) {
 
 void WindowMeter::add(int64_t at_us, size_t bytes) { sent_.push_back({at_us, static_cast<int64_t>(bytes)}); }
 
-MeteredWindow WindowMeter::worst() const {
+MeteredWindow WindowMeter::worst(int64_t ending_from_us) const {
   std::vector<Sent> sent = sent_;
   std::ranges::stable_sort(sent, {}, &Sent::at_us);
 
@@ -83,8 +83,10 @@ MeteredWindow WindowMeter::worst() const {
     const int64_t end_us = sent[j].at_us;
     starts.push_back({end_us, bytes, j});
     bytes += sent[j].bytes;
-    if (sent[j].bytes > alone.bytes) alone = {end_us, kSecondUs, sent[j].bytes, 1, 0, true};
+    if (end_us >= ending_from_us && sent[j].bytes > alone.bytes)
+      alone = {end_us, kSecondUs, sent[j].bytes, 1, 0, true};
     for (; end_us - starts[young].at_us >= kSecondUs; ++young) hull.add(starts[young]);
+    if (end_us < ending_from_us) continue;
 
     const auto consider = [&](const Start& start, int64_t length_us) {
       if (start.index == j) return;

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace shoal::comms {
@@ -30,7 +31,8 @@ class WindowMeter {
 
   /// The window with the largest bytes / max(bytes_per_s x T, the datagram when it stands alone); of equal
   /// ones the earliest to end. Cost: O(n log n).
-  MeteredWindow worst() const;
+  /// @param ending_from_us  windows that end earlier are left out.
+  MeteredWindow worst(int64_t ending_from_us = std::numeric_limits<int64_t>::min()) const;
 
  private:
   struct Sent {

@@ -187,9 +187,8 @@ TEST(SenderTest, AfterACrashWaitsUntilNoWindowCanBeOverBudget) {
   WindowMeter meter(1000);
   int64_t now_us = 0;
   for (int life = 0; life < 5; ++life) {
-    SenderOptions resumed = options;
-    if (life > 0) resumed.resumed_at_us = now_us;
-    Node node(resumed);
+    Node node(options);
+    if (life > 0) node.sender->assumeExhausted(now_us);
     for (int i = 0; i < 100; ++i)
       node.sender->offer(TrafficClass::kBricks, std::to_string(i), packet("SHOAL_R00_B", 300));
     for (int steps = 0; steps < 10; ++steps) {

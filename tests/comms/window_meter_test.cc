@@ -65,7 +65,8 @@ TEST(WindowMeterTest, AgreesWithBruteForceOverAllWindows) {
       sizes.push_back(static_cast<int64_t>(1 + random.below(1500)));
       meter.add(now_us, static_cast<size_t>(sizes.back()));
     }
-    double worst = 0;
+    const int64_t from_us = static_cast<int64_t>(random.below(static_cast<uint64_t>(now_us) + 1));
+    double worst = 0, worst_from = 0;
     for (size_t i = 0; i < times.size(); ++i) {
       int64_t bytes = 0;
       for (size_t j = i; j < times.size(); ++j) {
@@ -74,10 +75,12 @@ TEST(WindowMeterTest, AgreesWithBruteForceOverAllWindows) {
         double share = static_cast<double>(bytes) * 1e6 / (static_cast<double>(bytes_per_s) * length_us);
         if (i == j) share = std::min(share, 1.0);
         worst = std::max(worst, share);
+        if (times[j] >= from_us) worst_from = std::max(worst_from, share);
       }
     }
     EXPECT_NEAR(meter.worst().share, worst, 1e-9 * worst);
     EXPECT_EQ(meter.worst().within_budget, worst <= 1.0);
+    EXPECT_NEAR(meter.worst(from_us).share, worst_from, 1e-9 * worst_from);
   }
 }
 

@@ -2,7 +2,11 @@
 // A fusion node on buses of memory: what it says, and when.
 #include "fusion_node/node.h"
 
+#include <unistd.h>
+
 #include <chrono>
+#include <cmath>
+#include <filesystem>
 #include <memory>
 #include <set>
 #include <thread>
@@ -10,6 +14,7 @@
 #include <gtest/gtest.h>
 
 #include "shoal/comms/memory_bus.h"
+#include "shoal/comms/window_meter.h"
 #include "shoal/wire/map_codec.h"
 #include "shoal/wire/piece_codec.h"
 
@@ -64,6 +69,47 @@ TEST_F(NodeTest, SaysAFewChunksOfItsMapATurnAndAllInTheEnd) {
   int last = 0;
   listener_->receive(0, [&](const comms::Packet&) { ++last; });
   EXPECT_EQ(last, kBricks);  // at the end all at once
+}
+
+// A node keeps what time it is every 10 s. The first is killed some seconds after that, as it has said
+// something.
+TEST_F(NodeTest, KeepsItsBudgetHoweverOftenItIsKilled) {
+  NodeOptions small = options();
+  small.budget = 300;
+  small.state_dir = testing::TempDir() + "shoal_node" + std::to_string(::getpid());
+  std::filesystem::remove_all(small.state_dir);
+  comms::WindowMeter meter(small.budget);
+  const auto turnAt = [&](Node& node, double at_s) {
+    wire::Heartbeat robot;
+    robot.mission = kMission;
+    robot.time = {std::llround(at_s * 1e6)};
+    air_->publish({"SHOAL_R01_HEARTBEAT", wire::encode(robot)});
+    node.turn(1);
+    int said = 0;
+    air_->receive(0, [&](const comms::Packet& packet) {
+      if (!packet.channel.starts_with("SHOAL_OPERATOR_")) return;
+      ++said;
+      meter.add(robot.time.us, comms::wireSize(packet));
+    });
+    return said;
+  };
+  double at_s = 10;
+  {
+    Node first(small, *ears_, *local_);
+    turnAt(first, at_s);
+    for (at_s = 16; at_s < 19.5 && turnAt(first, at_s) == 0;) at_s += .1;
+  }
+  ASSERT_LT(at_s, 19.5);
+  for (int life = 0; life < 4; ++life) {
+    Node node(small, *ears_, *local_);
+    for (int turn = 0; turn < 2; ++turn) EXPECT_EQ(turnAt(node, at_s += .1), 0) << at_s;
+  }
+  Node last(small, *ears_, *local_);
+  int said = 0;
+  for (const double end_s = at_s + 20; at_s < end_s;) said += turnAt(last, at_s += .1);
+  EXPECT_GT(said, 0);
+  EXPECT_TRUE(meter.worst().within_budget) << meter.worst().bytes;
+  std::filesystem::remove_all(small.state_dir);
 }
 
 }  // namespace

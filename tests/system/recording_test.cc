@@ -294,6 +294,31 @@ TEST(TrafficAuditTest, FindsGapsWhateverTheOrderOfTheRecording) {
   EXPECT_EQ(traffic[1].gaps[0].bytes, 50);
 }
 
+// Budget 150 B/s, 100 B each: two within a second are too many, whoever says the second.
+TEST(TrafficAuditTest, WhoTakesTheirPlaceHasTheirBudget) {
+  const auto isWithin = [](double later_s, int32_t later_budget) {
+    TrafficAudit audit;
+    const auto beat = [&](double at_s, int32_t pid, int32_t budget) {
+      wire::Heartbeat heartbeat;
+      heartbeat.pid = pid;
+      heartbeat.budget = budget;
+      audit.hear("R00", {wire::MessageKind::kHeartbeat, Mission::at(at_s), kMission},
+                 {"SHOAL_R00_TOPICS", comms::Bytes(100 - 17 - 36)}, &heartbeat);
+    };
+    beat(0, 1, 150);
+    beat(2, 1, 150);
+    beat(later_s, 2, later_budget);
+    const std::vector<NodeTraffic> traffic = audit.traffic();
+    EXPECT_EQ(traffic.size(), 2u);
+    EXPECT_TRUE(traffic[0].worst.within_budget);
+    return traffic[1].worst.within_budget;
+  };
+  EXPECT_FALSE(isWithin(2.5, 150));
+  EXPECT_TRUE(isWithin(3.5, 150));
+  EXPECT_TRUE(isWithin(2.5, 140));  // started with another budget
+  EXPECT_TRUE(isWithin(1.5, 150));  // its clock began anew
+}
+
 TEST(TrafficAuditTest, WholeMapsAreNotOnTheLink) {
   TrafficAudit audit;
   audit.hear("OPERATOR", {wire::MessageKind::kMap, {0}, kMission}, {"SHOAL_OPERATOR_MAP", {1}}, nullptr);
