@@ -8,6 +8,7 @@
 #include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
 
+#include "fusion_node/mission_keys.h"
 #include "fusion_node/process.h"
 #include "operator_console/command.h"
 #include "operator_console/config_file.h"
@@ -64,6 +65,7 @@ int main(int argc, char** argv) {
   }
   try {
     fusion_node::setUpLog("console", log_level);
+    for (const std::string& typo : fusion_node::likelyTypos(app)) spdlog::warn("{}", typo);
     return chosen();
   } catch (const std::invalid_argument& error) {
     std::fprintf(stderr, "operator_console: %s\n", error.what());

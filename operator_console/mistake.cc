@@ -2,27 +2,12 @@
 #include "operator_console/mistake.h"
 
 #include <algorithm>
-#include <numeric>
 #include <vector>
+
+#include "fusion_node/near_word.h"
 
 namespace shoal::console {
 namespace {
-
-// Letters to put in, take out or change (Levenshtein).
-size_t lettersApart(const std::string& a, const std::string& b) {
-  std::vector<size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), size_t{0});
-  for (size_t i = 0; i < a.size(); ++i) {
-    size_t above_left = row[0];
-    row[0] = i + 1;
-    for (size_t j = 0; j < b.size(); ++j) {
-      const size_t above = row[j + 1];
-      row[j + 1] = std::min({above + 1, row[j] + 1, above_left + (a[i] == b[j] ? 0 : 1)});
-      above_left = above;
-    }
-  }
-  return row.back();
-}
 
 std::vector<std::string> commandsOf(const CLI::App& app) {
   std::vector<std::string> names;
@@ -39,23 +24,11 @@ void addOptions(const CLI::App& app, std::vector<std::string>& names) {
 }
 
 std::string meant(const std::string& word, const std::vector<std::string>& known) {
-  const std::string near = nearest(word, known);
+  const std::string near = fusion_node::nearest(word, known, std::max<size_t>(2, word.size() / 3));
   return near.empty() ? "" : "; did you mean " + near + "?";
 }
 
 }  // namespace
-
-std::string nearest(const std::string& word, std::span<const std::string> known) {
-  std::string best;
-  size_t least = std::max<size_t>(2, word.size() / 3) + 1;
-  for (const std::string& one : known) {
-    const size_t apart = lettersApart(word, one);
-    if (apart >= least || apart >= word.size()) continue;
-    least = apart;
-    best = one;
-  }
-  return best;
-}
 
 std::string mistakeIn(const CLI::App& app) {
   const CLI::App* command = &app;

@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <span>
 #include <string>
 
 #include <CLI/CLI.hpp>
 
 namespace shoal::console {
-
-/// The word that was most likely meant by `word`; empty when none is near.
-std::string nearest(const std::string& word, std::span<const std::string> known);
 
 /// After `app` has refused a command line because something is missing: the word in it that is no command,
 /// or no option of the command, and what may have been meant. Empty when there is no such word.

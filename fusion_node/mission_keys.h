@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+namespace shoal::fusion_node {
+
+/// What keys of the file that `app` was given by --config are likely typing errors, a sentence each: no flags
+/// of the program and its chosen command, but nearly one. Other keys are passed over: one mission.toml serves
+/// all our programs.
+std::vector<std::string> likelyTypos(const CLI::App& app);
+
+}  // namespace shoal::fusion_node
