@@ -10,6 +10,7 @@
 
 #include "fusion_node/authentication.h"
 #include "fusion_node/link.h"
+#include "fusion_node/mission_keys.h"
 #include "fusion_node/node.h"
 #include "fusion_node/process.h"
 #include "shoal/comms/channels.h"
@@ -17,7 +18,9 @@
 #include "shoal/comms/lcm_url.h"
 #include "shoal/comms/rate_limited_bus.h"
 #include "shoal/mapping/atomic_file.h"
+#include "shoal/number_check.h"
 #include "shoal/version.h"
+#include "shoal/world/ids.h"
 
 namespace {
 
@@ -99,7 +102,7 @@ int main(int argc, char** argv) {
   app.add_option("--rate", rate, "mission seconds per wall second: 1, 10, or max = as the robots")
       ->capture_default_str();
   app.add_option("--cell-size-m", options.cell_size_m, "edge of a cell, m, until a robot has said")
-      ->check(CLI::PositiveNumber)
+      ->check(moreThanZero)
       ->capture_default_str();
   app.add_option(
          "--library", library,
@@ -115,6 +118,7 @@ int main(int argc, char** argv) {
   }
   try {
     fusion_node::setUpLog(options.name, log_level);
+    for (const std::string& typo : fusion_node::likelyTypos(app)) spdlog::warn("{}", typo);
     fusion_node::catchStopSignals();
     options.mission = fusion_node::missionId(mission);
     options.rate = fusion_node::parseRate(rate);
@@ -123,6 +127,10 @@ int main(int argc, char** argv) {
       options.matcher.similarity = matching::usualSimilarity(options.matcher.matcher);
     if (!library.empty()) options.library = mapping::parseLibrary(mapping::readFile(library), library);
     comms::channelName(options.name, "HEARTBEAT");  // a bad node name is a bad flag
+    if (world::parseRobotId(options.name))
+      throw std::invalid_argument("--node " + options.name +
+                                  " is the name of a robot; name it otherwise, as OPERATOR");
+    if (!options.out_dir.empty()) mapping::makeFolder(options.out_dir);
     return run(options, link);
   } catch (const std::invalid_argument& error) {
     std::fprintf(stderr, "fusion_node: %s\n", error.what());

@@ -2,6 +2,7 @@
 #include "operator_console/evaluate.h"
 
 #include <cmath>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -33,6 +34,12 @@ struct EvaluateFlags {
   bool json = false, explain = false;
 };
 
+// "reef:varied", or of a folder its last part: worlds are moved.
+std::string nameOf(const std::string& world) {
+  const auto path = std::filesystem::path(world).lexically_normal();
+  return (path.has_filename() ? path : path.parent_path()).filename();
+}
+
 void evaluate(const EvaluateFlags& flags) {
   const Json summary = [&] {
     try {
@@ -42,6 +49,9 @@ void evaluate(const EvaluateFlags& flags) {
     }
   }();
   const world::SurveyOptions team = teamOf(summary);
+  if (const std::string flown = summary.value("world", flags.world); nameOf(flown) != nameOf(flags.world))
+    std::cerr << flags.run << " was flown over " << flown << "; this scores it against " << flags.world
+              << '\n';
   const auto place = world::openPlace(flags.world, summary.at("seed").get<uint64_t>(), cameraOf(summary));
   std::vector<matching::MatcherOptions> matchers = eval::allMatchers();
   if (flags.matcher != "all") {

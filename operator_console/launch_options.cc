@@ -8,6 +8,8 @@
 #include "shoal/comms/lcm_url.h"
 #include "shoal/comms/link_model.h"
 #include "shoal/comms/seal.h"
+#include "shoal/mapping/atomic_file.h"
+#include "shoal/mapping/library.h"
 #include "shoal/mapping/local_belief.h"
 #include "shoal/robot/known_topics_file.h"
 
@@ -38,6 +40,7 @@ void check(const LaunchOptions& options) {
                                 std::to_string(options.budget));
   }
   comms::readLink(options.link);
+  if (!options.library.empty()) mapping::parseLibrary(mapping::readFile(options.library), options.library);
   if (!options.key.empty()) comms::SealKey::read(options.key);
   if (options.profile != "best" && options.profile != "paper") {
     throw std::invalid_argument("--profile must be best or paper, got \"" + options.profile + "\"");

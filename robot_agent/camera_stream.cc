@@ -3,6 +3,8 @@
 
 #include <stdexcept>
 
+#include <spdlog/spdlog.h>
+
 #include "shoal/wire/camera_pixels.h"
 #include "shoal/world/recording.h"
 
@@ -10,6 +12,7 @@ namespace shoal::robot_agent {
 namespace {
 
 constexpr double kMillimetres = 1000.0;
+constexpr std::chrono::seconds kWarnEvery{30};
 
 }  // namespace
 
@@ -20,13 +23,23 @@ CameraStream::CameraStream(comms::Bus& bus, const std::string& prefix, const wor
       camera_(options.camera),
       timeout_s_(timeout_s),
       live_(options),
-      last_picture_(Clock::now()) {}
+      last_picture_(Clock::now()),
+      warned_at_(Clock::now() - kWarnEvery) {}
 
 bool CameraStream::ready() {
   bus_.receive(0, [this](const comms::Packet& packet) { take(packet); });
+  warn();
   const std::chrono::duration<double> silence = Clock::now() - last_picture_;
   if (timeout_s_ > 0 && silence.count() > timeout_s_) live_.close();
   return live_.ready();
+}
+
+void CameraStream::warn() {
+  if (Clock::now() - warned_at_ < kWarnEvery) return;
+  warned_at_ = Clock::now();
+  const std::string now = troubles();
+  if (now != warned_of_) spdlog::warn("left out so far: {}", now);
+  warned_of_ = now;
 }
 
 std::string CameraStream::troubles() const {

@@ -23,7 +23,7 @@ class CameraStream final : public world::ObservationSource {
   CameraStream(comms::Bus& bus, const std::string& prefix, const world::LiveOptions& options,
                double timeout_s);
 
-  /// Takes in what has come.
+  /// Takes in what has come. Warns of what cannot be used, every half minute while it becomes more.
   bool ready() override;
   /// Nothing unless ready().
   std::optional<world::Observation> next() override { return live_.next(); }
@@ -37,6 +37,7 @@ class CameraStream final : public world::ObservationSource {
   void takeColor(const wire::ImageView& image);
   void takeDepth(const wire::ImageView& image, bool zipped, double units_per_metre);
   bool hasCamerasSize(const wire::ImageView& image);
+  void warn();
   void refuse(wire::DecodeError error) { ++refused_[static_cast<size_t>(error)]; }
 
   comms::Bus& bus_;
@@ -48,6 +49,8 @@ class CameraStream final : public world::ObservationSource {
   uint64_t other_size_ = 0;
   world::Vehicle vehicle_;
   Clock::time_point last_picture_;
+  std::string warned_of_;
+  Clock::time_point warned_at_;
 };
 
 }  // namespace shoal::robot_agent

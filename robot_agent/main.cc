@@ -17,6 +17,7 @@
 
 #include "fusion_node/authentication.h"
 #include "fusion_node/link.h"
+#include "fusion_node/mission_keys.h"
 #include "fusion_node/moment.h"
 #include "fusion_node/process.h"
 #include "robot_agent/agent.h"
@@ -28,6 +29,7 @@
 #include "shoal/comms/rate_limited_bus.h"
 #include "shoal/mapping/atomic_file.h"
 #include "shoal/mapping/library.h"
+#include "shoal/number_check.h"
 #include "shoal/robot/known_topics_file.h"
 #include "shoal/version.h"
 #include "shoal/world/place.h"
@@ -176,6 +178,8 @@ int run(Flags flags) {
   options.live = isLive(flags);
   options.has_mission_time = flags.source_start_us >= 0;
   options.team_size = flags.survey.num_robots;
+  for (const std::string& folder : {options.out_dir, flags.checkpoint})
+    if (!folder.empty()) mapping::makeFolder(folder);
   if (!flags.checkpoint.empty()) resume(flags, *id);
   options.matcher.sigma = matching::parseSigma(flags.sigma);
   if (!flags.bootstrap.empty()) {
@@ -260,16 +264,16 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--rate", f.rate, "mission seconds per wall second: 1, 10, or max")->capture_default_str();
   app.add_option("--cell-size-m", f.survey.cell_size_m, "edge of a cell, m (default: the world's)")
-      ->check(CLI::PositiveNumber);
+      ->check(moreThanZero);
   app.add_option(
          "--altitude-m", f.survey.altitude_m,
          "camera height, m (default: native resolution); of a recording without depth, above a flat floor")
-      ->check(CLI::PositiveNumber);
+      ->check(moreThanZero);
   app.add_option("--camera", f.camera, "camera.json with the intrinsics (default: the world's usual)");
   auto* period =
       app.add_option("--frame-period-s", f.survey.frame_period_s,
                      "mission seconds between images; of lcm:PREFIX the least (default: every one)")
-          ->check(CLI::PositiveNumber)
+          ->check(moreThanZero)
           ->capture_default_str();
   app.add_option("--source-url", f.source_url,
                  "lcm:PREFIX: multicast group of the cameras (default: the link's)");
@@ -278,7 +282,7 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--source-start-us", f.source_start_us,
                  "lcm:PREFIX: the utime that is mission time 0 (default: of the first image)")
-      ->check(CLI::NonNegativeNumber);
+      ->check(zeroOrMore);
   app.add_option("--exposure", f.survey.sensors.exposure, "robots differ in brightness by up to 1 + this")
       ->capture_default_str();
   app.add_option("--color-cast", f.survey.sensors.color_cast,
@@ -325,6 +329,7 @@ int main(int argc, char** argv) {
   }
   try {
     fusion_node::setUpLog(f.single ? "single" : f.robot, f.log_level);
+    for (const std::string& typo : fusion_node::likelyTypos(app)) spdlog::warn("{}", typo);
     fusion_node::catchStopSignals();
     f.period_given = period->count() > 0;
     if (similarity->count() == 0)

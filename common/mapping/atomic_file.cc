@@ -37,14 +37,20 @@ void syncFolder(const std::filesystem::path& folder) {
 
 }  // namespace
 
+void makeFolder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw std::runtime_error("cannot make the folder " + folder + ": " + error.message());
+  if (::access(folder.c_str(), W_OK | X_OK) != 0) fail("cannot write into", folder);
+}
+
 void writeFileAtomically(const std::string& path, std::string_view content) {
   writeFileAtomically(path, std::span(&content, 1));
 }
 
 void writeFileAtomically(const std::string& path, std::span<const std::string_view> contents) {
   const auto folder = std::filesystem::path(path).parent_path();
-  std::error_code error;
-  if (!folder.empty()) std::filesystem::create_directories(folder, error);
+  if (!folder.empty()) makeFolder(folder);
   const std::string temporary = path + ".tmp" + std::to_string(::getpid());
   const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   if (file < 0) fail("cannot write", temporary);

@@ -7,6 +7,11 @@
 
 namespace shoal::mapping {
 
+/// Makes a folder, and those above it, where it is missing: before long work, for what that is to write.
+/// @throws std::runtime_error naming the folder and what the system said when it cannot be made or written
+/// into.
+void makeFolder(const std::string& folder);
+
 /// Writes a file whole or not at all: to a temporary name in the same folder, flushed, then renamed; then
 /// the folder is flushed, where its file system can. Makes the folder when it is missing.
 /// @throws std::runtime_error naming the path and what the system said; the temporary file is gone then.

@@ -66,18 +66,22 @@ Clustering repaired(const DescriptorSet& topics, const Clustering& clustering,
   return repair(contract(static_cast<int>(owner.size()), constraints), clustering, owner);
 }
 
+void demandBuilt(const std::string& what, const std::string& name, const std::vector<std::string>& names) {
+  if (std::ranges::find(names, name) != names.end()) return;
+  std::string built;
+  for (const std::string& each : names) built += (built.empty() ? "" : ", ") + each;
+  throw std::invalid_argument(what + " \"" + name + "\" is unknown; built are: " + built);
+}
+
 }  // namespace
 
 void check(const MatcherOptions& options) {
-  const std::vector<std::string>& names = matcherNames();
-  if (std::find(names.begin(), names.end(), options.matcher) == names.end()) {
-    std::string built;
-    for (const std::string& name : names) built += (built.empty() ? "" : ", ") + name;
-    throw std::invalid_argument("matcher \"" + options.matcher + "\" is unknown; built are: " + built);
-  }
+  demandBuilt("matcher", options.matcher, matcherNames());
   const bool discounts = options.similarity == kDiscounted;
   const bool on_graph = options.matcher == "clear" || options.matcher == "components";
-  if (!discounts) similarityNamed(options.similarity);
+  std::vector<std::string> similarities = similarityNames();
+  similarities.emplace_back(kDiscounted);
+  demandBuilt("similarity", options.similarity, similarities);
   if (discounts && !on_graph && options.matcher != "shoal") {
     throw std::invalid_argument(
         "matcher \"" + options.matcher +

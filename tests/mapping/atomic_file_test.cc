@@ -9,6 +9,7 @@
 
 #include <cerrno>
 #include <filesystem>
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -75,6 +76,21 @@ class AtomicFileTest : public testing::Test {
 
   std::string folder_;
 };
+
+TEST_F(AtomicFileTest, FoldersAreMadeOrItIsSaidWhyNot) {
+  makeFolder(folder_ + "/a/b");
+  makeFolder(folder_ + "/a/b");
+  EXPECT_TRUE(std::filesystem::is_directory(folder_ + "/a/b"));
+  for (const auto& use : {std::function<void()>([&] { makeFolder(path() + "/c"); }),
+                          std::function<void()>([&] { writeFileAtomically(path() + "/c/d", "lost"); })}) {
+    try {
+      use();
+      ADD_FAILURE() << "a folder within a file";
+    } catch (const std::runtime_error& error) {
+      EXPECT_EQ(std::string(error.what()), "cannot make the folder " + path() + "/c: Not a directory");
+    }
+  }
+}
 
 TEST_F(AtomicFileTest, IsOnTheDiskUnderItsNameWhenItReturns) {
   writeFileAtomically(path(), "after");

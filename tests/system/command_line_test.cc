@@ -7,6 +7,9 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <regex>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -244,6 +247,56 @@ TEST(LaunchTest, ReadsFlagsFromMissionToml) {
   std::ofstream(folder + "/mission.toml") << "[launch]\nworld = \"reef:sparse\"\nlink = \"string\"\n";
   expectRefusal(launch, "string is neither clean, mesh, acoustic or satellite nor a file");
   expectRefusal("launch --config " + folder + "/nothing.toml", "nothing.toml");
+}
+
+// One file serves all programs. Each of these ends at once, for another reason.
+class MissionFileTest : public testing::Test {
+ protected:
+  struct Program {
+    std::string path, help, ends;
+  };
+  const std::vector<Program> programs_{
+      {BIN "/robot_agent", "--help", "--robot nobody --source reef:sparse"},
+      {BIN "/fusion_node", "--help", "--node nobody"},
+      {CONSOLE, "launch --help", "launch --out ''"},
+  };
+  const std::string file_ = temporaryFolder() + "/mission.toml";
+
+  std::string saidBy(const Program& program, const std::string& keys) {
+    std::ofstream(file_) << keys;
+    const Outcome outcome = run(program.path, program.ends + " --config " + file_);
+    EXPECT_EQ(outcome.exit_code, 2) << outcome.output;
+    return outcome.output;
+  }
+};
+
+TEST_F(MissionFileTest, SaysWhatIsLikelyATypingError) {
+  for (const Program& program : programs_) {
+    EXPECT_NE(saidBy(program, "budegt = 500\nwindspeed = 3\n")
+                  .find(file_ + ": nothing is known of \"budegt\"; did you mean \"budget\"?"),
+              std::string::npos);
+    EXPECT_EQ(saidBy(program, "[tune]\nbudegt = 500\n").find("nothing is known"), std::string::npos);
+  }
+  EXPECT_NE(saidBy(programs_.back(), "[launch]\nbudegt = 500\n").find("\"budegt\""), std::string::npos);
+}
+
+TEST_F(MissionFileTest, FlagsOfTheOtherProgramsAreNoTypingErrors) {
+  const std::regex flag("--([a-z-]+)");
+  std::map<std::string, std::set<std::string>> flags;
+  for (const Program& program : programs_) {
+    const std::string help = run(program.path, program.help).output;
+    for (std::sregex_iterator it(help.begin(), help.end(), flag), end; it != end; ++it)
+      flags[program.path].insert((*it)[1]);
+    EXPECT_GT(flags[program.path].size(), 15u);
+  }
+  for (const Program& program : programs_) {
+    std::string keys;
+    for (const auto& [path, of_others] : flags)
+      for (const std::string& name : of_others)
+        if (!flags[program.path].contains(name)) keys += name + " = 1\n";
+    const std::string said = saidBy(program, keys);
+    EXPECT_EQ(said.find("nothing is known"), std::string::npos) << program.path << ": " << said;
+  }
 }
 
 }  // namespace
