@@ -63,7 +63,7 @@ std::string meta(const std::string& path, sqlite3* database, const std::string& 
 }
 
 void setMeta(const std::string& path, sqlite3* database, const std::string& key, const std::string& value) {
-  const Statement row = prepared(path, database, "INSERT INTO meta VALUES (?, ?)");
+  const Statement row = prepared(path, database, "INSERT OR REPLACE INTO meta VALUES (?, ?)");
   bind(row.get(), 1, key);
   bind(row.get(), 2, value);
   step(path, database, row.get());
@@ -127,6 +127,13 @@ void MissionFile::append(const mapping::MissionEvent& event) {
   bind(put_event_.get(), 4, event.says);
   step(path_, database_.get(), put_event_.get());
 }
+
+void MissionFile::set(const std::string& key, const std::string& value) {
+  begin();
+  setMeta(path_, database_.get(), key, value);
+}
+
+std::string MissionFile::get(const std::string& key) const { return meta(path_, database_.get(), key); }
 
 void MissionFile::commit() {
   if (!is_open_) return;

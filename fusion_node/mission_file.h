@@ -23,10 +23,10 @@ struct CloseSqlite {
 };
 
 /// What one node heard of one mission, in the order in which it heard it, as an SQLite database: tables
-/// `meta` (key, value: format, mission, node), `heard` (id, wall_us, channel, bytes) and `events` (id, at_s,
-/// kind, node, says). Write-ahead log: readers of other processes do not wait, and a process that is killed
-/// at any moment loses what it had not committed and nothing else. A machine that loses power may lose the
-/// last transactions, never the file.
+/// `meta` (key, value: format, mission, node and what set() says), `heard` (id, wall_us, channel, bytes) and
+/// `events` (id, at_s, kind, node, says). Write-ahead log: readers of other processes do not wait, and a
+/// process that is killed at any moment loses what it had not committed and nothing else. A machine that
+/// loses power may lose the last transactions, never the file.
 class MissionFile {
  public:
   /// Opens the file, or makes it. @throws std::runtime_error naming a file that cannot be opened, is of
@@ -36,11 +36,14 @@ class MissionFile {
   /// Adds to the transaction that is open, or to a new one. @throws std::runtime_error, as all below.
   void append(const comms::Packet& packet, int64_t wall_us);
   void append(const mapping::MissionEvent& event);
+  /// One value for every key, that of the last time.
+  void set(const std::string& key, const std::string& value);
 
   /// What was added is on its way to the disk: no kill takes it back. Costs nothing when nothing was.
   void commit();
 
   std::vector<mapping::MissionEvent> events() const;
+  std::string get(const std::string& key) const;  ///< empty when it was never set
 
  private:
   void begin();

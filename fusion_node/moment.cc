@@ -14,9 +14,16 @@ namespace {
 constexpr double kDayUs = 86'400e6;
 constexpr double kMostDays = 30;
 
+std::string bootId() {
+  std::string id;
+  std::ifstream("/proc/sys/kernel/random/boot_id") >> id;
+  return id;
+}
+
 }  // namespace
 
 Moment thisMoment() {
+  static const std::string kBootId = bootId();
   Moment now;
   now.wall_us = std::chrono::duration_cast<std::chrono::microseconds>(
                     std::chrono::system_clock::now().time_since_epoch())
@@ -24,7 +31,7 @@ Moment thisMoment() {
   timespec since_boot{};
   if (::clock_gettime(CLOCK_BOOTTIME, &since_boot) != 0) return now;
   now.boot_us = int64_t{since_boot.tv_sec} * 1'000'000 + since_boot.tv_nsec / 1000;
-  std::ifstream("/proc/sys/kernel/random/boot_id") >> now.boot_id;
+  now.boot_id = kBootId;
   return now;
 }
 

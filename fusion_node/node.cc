@@ -179,13 +179,13 @@ void Node::recall() {
   memory_.emplace(options_.state_dir, options_.name, options_.mission);
   const auto clock = memory_->recall(state_);
   if (!clock) return;
-  const Gap gap = passedBetween({.wall_us = clock->second, .boot_us = 0, .boot_id = {}}, thisMoment());
+  const Gap gap = passedBetween(clock->at, thisMoment());
   if (!gap.doubt.empty()) {
     spdlog::warn("what {} remembers of its clock: {}; goes on from there",
                  missionFilePath(options_.state_dir, options_.mission), gap.doubt);
   }
   const double passed_us = options_.rate * static_cast<double>(gap.us);
-  clock_.advanceTo(clock->first + std::llround(passed_us));
+  clock_.advanceTo(clock->mission_us + std::llround(passed_us));
   sender_.assumeExhausted(clock_.now());
   came_back_ = true;
   spdlog::info("comes back with {} pieces of {} robots, at {:.1f} s", state_.beliefs().numPieces(),

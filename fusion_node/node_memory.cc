@@ -2,8 +2,9 @@
 #include "fusion_node/node_memory.h"
 
 #include <algorithm>
-#include <chrono>
+#include <charconv>
 #include <filesystem>
+#include <system_error>
 
 #include "fusion_node/limits.h"
 #include "shoal/comms/channels.h"
@@ -14,12 +15,7 @@ namespace shoal::fusion_node {
 namespace {
 
 constexpr int64_t kHeartbeatEveryUs = 10'000'000;
-
-int64_t wallUs() {
-  return std::chrono::duration_cast<std::chrono::microseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
+const std::string kBootId = "boot_id", kBootUs = "boot_us";  // of the last own heartbeat
 
 std::string madeIn(const std::string& folder, int32_t mission) {
   std::filesystem::create_directories(folder);
@@ -35,8 +31,8 @@ std::string missionFilePath(const std::string& state_dir, int32_t mission) {
 NodeMemory::NodeMemory(const std::string& folder, const std::string& node, int32_t mission)
     : path_(madeIn(folder, mission)), node_(node), mission_(mission), file_(path_, node, mission) {}
 
-std::optional<std::pair<int64_t, int64_t>> NodeMemory::recall(MissionState& state) {
-  std::optional<std::pair<int64_t, int64_t>> clock;
+std::optional<NodeMemory::Clock> NodeMemory::recall(MissionState& state) {
+  std::optional<Clock> clock;
   const std::string own = comms::channelName(node_, "HEARTBEAT");
   comms::Stats passed_over;
   MissionFileReader file(path_);
@@ -44,8 +40,13 @@ std::optional<std::pair<int64_t, int64_t>> NodeMemory::recall(MissionState& stat
     const auto header = wire::peek(event->packet.bytes);
     if (!header || header->mission != mission_) continue;
     state.hear(event->packet, passed_over);
-    if (event->packet.channel == own) clock = {header->time.us, event->time_us};
+    if (event->packet.channel == own)
+      clock = {.mission_us = header->time.us, .at = {.wall_us = event->time_us, .boot_us = 0, .boot_id = {}}};
   }
+  const std::string boot_us = file_.get(kBootUs);
+  if (clock &&
+      std::from_chars(boot_us.data(), boot_us.data() + boot_us.size(), clock->at.boot_us).ec == std::errc{})
+    clock->at.boot_id = file_.get(kBootId);
   const std::vector<mapping::MissionEvent> events = file_.events();
   if (!events.empty()) last_event_ = events.back();
   state.restoreEvents(events);
@@ -66,7 +67,12 @@ void NodeMemory::keep(const comms::Packet& packet, bool is_new) {
   } else if (!is_new) {
     return;
   }
-  file_.append(packet, wallUs());
+  const Moment now = thisMoment();
+  file_.append(packet, now.wall_us);
+  if (packet.channel == comms::channelName(node_, "HEARTBEAT")) {
+    file_.set(kBootId, now.boot_id);
+    file_.set(kBootUs, std::to_string(now.boot_us));
+  }
   has_kept_ = true;
 }
 

@@ -5,11 +5,11 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "fusion_node/mission_file.h"
 #include "fusion_node/mission_state.h"
+#include "fusion_node/moment.h"
 #include "shoal/wire/heartbeat_codec.h"
 
 namespace shoal::fusion_node {
@@ -28,10 +28,14 @@ class NodeMemory {
   /// @throws std::runtime_error as MissionFile.
   NodeMemory(const std::string& folder, const std::string& node, int32_t mission);
 
-  /// Takes all that was kept into `state`. Returns the node's mission time in its last heartbeat, and the
-  /// wall time of that, microseconds since 1970; nothing when there is none.
-  /// @throws std::runtime_error naming the file that cannot be read.
-  std::optional<std::pair<int64_t, int64_t>> recall(MissionState& state);
+  struct Clock {
+    int64_t mission_us;
+    Moment at;
+  };
+
+  /// Takes all that was kept into `state`. Returns the node's mission time in its last heartbeat, and when
+  /// that was; nothing when there is none. @throws std::runtime_error naming the file that cannot be read.
+  std::optional<Clock> recall(MissionState& state);
 
   /// A packet was heard, or said by this node itself; `is_new` as MissionState::hear() says.
   /// @throws std::runtime_error naming the file that cannot be written.

@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include "fusion_node/moment.h"
 #include "fusion_node/node_memory.h"
 #include "shoal/mapping/atomic_file.h"
 #include "shoal/random.h"
@@ -53,6 +54,7 @@ class NodeMemoryTest : public testing::Test {
 };
 
 TEST_F(NodeMemoryTest, StateClockAndEventsComeBack) {
+  const Moment began = thisMoment();
   MissionState before(kMission, {});
   {
     NodeMemory memory(dir_, "OPERATOR", kMission);
@@ -69,7 +71,10 @@ TEST_F(NodeMemoryTest, StateClockAndEventsComeBack) {
   NodeMemory memory(dir_, "OPERATOR", kMission);
   const auto clock = memory.recall(after);
   ASSERT_TRUE(clock);
-  EXPECT_EQ(clock->first, 40'000'000);
+  EXPECT_EQ(clock->mission_us, 40'000'000);
+  EXPECT_EQ(clock->at.boot_id, thisMoment().boot_id);
+  EXPECT_GE(clock->at.boot_us, began.boot_us);
+  EXPECT_LE(clock->at.boot_us, thisMoment().boot_us);
   EXPECT_EQ(after.beliefs().digest(), before.beliefs().digest());
   ASSERT_EQ(after.events().size(), 2u);
   EXPECT_EQ(after.events()[1].kind, "lost");
@@ -77,6 +82,23 @@ TEST_F(NodeMemoryTest, StateClockAndEventsComeBack) {
   size_t kept = 0;
   for (MissionFileReader file(missionFilePath(dir_, kMission)); file.next();) ++kept;
   EXPECT_EQ(kept, 13u);  // eleven topics, each once, and two heartbeats
+}
+
+// As files of older builds, and those that somebody wrote into.
+TEST_F(NodeMemoryTest, GoesByTheWallClockWhereTheTimeSinceTheMachineWasStartedIsNotKnown) {
+  for (const std::string boot_us : {"", "soon"}) {
+    MissionState state(kMission, {});
+    NodeMemory memory(dir_, "OPERATOR", kMission);
+    hear(memory, state, heartbeat(1));
+    memory.commit(state);
+    MissionFile file(missionFilePath(dir_, kMission), "OPERATOR", kMission);
+    file.set("boot_us", boot_us);
+    file.commit();
+    const auto clock = memory.recall(state);
+    ASSERT_TRUE(clock);
+    EXPECT_EQ(clock->at.boot_id, "") << boot_us;
+    EXPECT_GT(clock->at.wall_us, 0);
+  }
 }
 
 TEST_F(NodeMemoryTest, ARobotThatHasLandedHasLandedStill) {
