@@ -215,6 +215,13 @@ bool MissionState::holdsWhole(const std::string& robot) const {
   return id && said != heartbeats_.end() && said->second.own_digest == beliefs_.digestOf(*id);
 }
 
+bool MissionState::holdsLearnt(const std::string& robot) const {
+  const auto id = world::parseRobotId(robot);
+  const auto said = heartbeats_.find(robot);
+  return id && said != heartbeats_.end() && wire::hasLanded(said->second.phase) &&
+         said->second.learnt == wire::shareDigest(beliefs_.learntDigestOf(*id));
+}
+
 double MissionState::cellSize() const {
   if (const auto common = commonSettings(beliefs_, mapping::judge(beliefs_).excluded))
     return common->cell_size_m;

@@ -95,6 +95,8 @@ class MissionState {
   std::vector<wire::Heartbeat::Share> roster() const;
   /// True when all is held that this robot says it has.
   bool holdsWhole(const std::string& robot) const;
+  /// True when this robot has landed and all is held that it has learnt: its topics, its settings.
+  bool holdsLearnt(const std::string& robot) const;
 
   /// Edge of a cell as most robots say, metres; as the heartbeat of the lowest says before that, and the
   /// constructor's before any was heard.

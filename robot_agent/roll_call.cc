@@ -33,22 +33,22 @@ void RollCall::look(const fusion_node::MissionState& heard, double wall_s) {
     if (!robot || *robot == self_ || heartbeat.phase == wire::Phase::kNode) continue;
     Member& member = members_[*robot];
     if (member.epoch != heartbeat.epoch || member.said != heartbeat.time) {
-      if (member.epoch != heartbeat.epoch) member.is_whole = false;
+      if (member.epoch != heartbeat.epoch) member.is_known = false;
       member.epoch = heartbeat.epoch;
       member.said = heartbeat.time;
       member.heard_s = wall_s;
       member.patience_s = patience(heartbeat);
     }
     // Once is enough: what it has learnt changes no more, only what it makes of it.
-    if (heartbeat.phase != wire::Phase::kFlying && heard.holdsWhole(node)) member.is_whole = true;
+    if (heard.holdsLearnt(node)) member.is_known = true;
   }
 }
 
-std::vector<std::string> RollCall::notWhole(bool silent, double wall_s) const {
+std::vector<std::string> RollCall::unknown(bool silent, double wall_s) const {
   std::vector<std::string> names;
   for (const auto& [robot, member] : members_) {
     const bool is_silent = wall_s - member.heard_s >= member.patience_s;
-    if (!member.is_whole && is_silent == silent && !excluded_.contains(robot))
+    if (!member.is_known && is_silent == silent && !excluded_.contains(robot))
       names.push_back(world::name(robot));
   }
   return names;

@@ -13,8 +13,8 @@
 namespace shoal::robot_agent {
 
 /// Who of a team is still to be waited for, by a robot that has landed: those that fly, and those of which it
-/// does not hold all that they had to say when they had landed. A robot that falls silent for long is waited
-/// for no more; one that is heard again is.
+/// does not hold all topics. Maps are not waited for: under a thin budget they come much later. A robot that
+/// falls silent for long is waited for no more; one that is heard again is.
 class RollCall {
  public:
   /// @param self       who waits.
@@ -26,10 +26,10 @@ class RollCall {
   void look(const fusion_node::MissionState& heard, double wall_s);
 
   /// Names of those that are still to come, ascending. Empty: all are there, or silent.
-  std::vector<std::string> missing(double wall_s) const { return notWhole(false, wall_s); }
+  std::vector<std::string> missing(double wall_s) const { return unknown(false, wall_s); }
 
-  /// Of those not waited for, who is silent and never was whole.
-  std::vector<std::string> silent(double wall_s) const { return notWhole(true, wall_s); }
+  /// Of those not waited for, who is silent and never was known.
+  std::vector<std::string> silent(double wall_s) const { return unknown(true, wall_s); }
 
  private:
   struct Member {
@@ -37,9 +37,9 @@ class RollCall {
     double patience_s = 0;
     world::Timestamp said;  // by its own clock
     int32_t epoch = -1;
-    bool is_whole = false;  // what it had to say when it had landed was held
+    bool is_known = false;  // what it has learnt was held
   };
-  std::vector<std::string> notWhole(bool silent, double wall_s) const;
+  std::vector<std::string> unknown(bool silent, double wall_s) const;
 
   world::RobotId self_;
   std::map<world::RobotId, Member> members_;

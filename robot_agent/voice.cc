@@ -147,6 +147,7 @@ void Voice::report(wire::Heartbeat& h) const {
   uint64_t rejected = 0;
   for (const auto& [reason, count] : sender_.stats().rejected) rejected += count;
   h.own_digest = said_.digestOf(options_.robot);
+  if (wire::hasLanded(h.phase)) h.learnt = wire::shareDigest(said_.learntDigestOf(options_.robot));
   h.bytes_sent = static_cast<int64_t>(sender_.stats().linkBytes());
   h.budget = static_cast<int32_t>(options_.budget);
   h.queue_bytes = static_cast<int32_t>(std::min<int64_t>(sender_.backlog(), INT32_MAX));

@@ -195,6 +195,16 @@ uint64_t BeliefStore::digestOf(world::RobotId robot) const {
   return sum == sums_.end() ? 0 : sum->second.digest;
 }
 
+uint64_t BeliefStore::learntDigestOf(world::RobotId robot) const {
+  uint64_t digest = 0;
+  for (const PieceKind kind : {PieceKind::kTopic, PieceKind::kSettings}) {
+    for (auto at = slots_.lower_bound({robot, kind, kLowestIndex});
+         at != slots_.end() && at->first.robot == robot && at->first.kind == kind; ++at)
+      for (const auto& [number, part] : at->second.parts) digest += part.hash;
+  }
+  return digest;
+}
+
 uint64_t BeliefStore::digest() const {
   uint64_t digest = 0;
   for (const auto& [robot, sum] : sums_) {

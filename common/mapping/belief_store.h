@@ -115,6 +115,10 @@ class BeliefStore {
   /// its own without keeping the parts in order.
   uint64_t digestOf(world::RobotId robot) const;
 
+  /// Digest of a robot's topics and settings: of what others need to know to judge their maps by.
+  /// Cost: O(those).
+  uint64_t learntDigestOf(world::RobotId robot) const;
+
   /// Digest of the whole state. When and from whom things were heard does not enter.
   uint64_t digest() const;
 

@@ -33,6 +33,7 @@ std::string fault(const Heartbeat& h) {
   }
   if (h.battery_percent < -1 || h.battery_percent > 100) return "battery_percent lies outside [-1, 100]";
   if (h.depth_cm < -1) return "depth_cm is below -1";
+  if (h.learnt != 0 && !hasLanded(h.phase)) return "learnt is of robots that have landed";
   if (h.roster.size() > static_cast<size_t>(kMaxRoster)) return "the roster has more than 256 robots";
   int32_t last = -1;
   for (const auto& share : h.roster) {
@@ -44,7 +45,8 @@ std::string fault(const Heartbeat& h) {
 }
 
 // Class bytes; then the robots in runs of consecutive numbers, as pairs (numbers left out, length - 1) after
-// the count of runs; then their digests; then, when either is known, battery and depth, each plus one.
+// the count of runs; then their digests; then, of who has landed, what it has learnt; then, when either is
+// known, battery and depth, each plus one.
 Bytes payloadOf(const Heartbeat& h, size_t num_shares) {
   Bytes out;
   for (const int64_t bytes : h.class_bytes) putVarint(out, static_cast<uint64_t>(bytes));
@@ -64,6 +66,7 @@ Bytes payloadOf(const Heartbeat& h, size_t num_shares) {
   putVarint(out, num_runs);
   out.insert(out.end(), runs.begin(), runs.end());
   for (size_t i = 0; i < num_shares; ++i) putBigEndian(out, h.roster[i].digest, 4);
+  if (hasLanded(h.phase)) putBigEndian(out, h.learnt, 4);
   if (h.battery_percent >= 0 || h.depth_cm >= 0) {
     putVarint(out, static_cast<uint64_t>(h.battery_percent + 1));
     putVarint(out, static_cast<uint64_t>(int64_t{h.depth_cm} + 1));
@@ -84,6 +87,7 @@ bool readPayload(std::span<const uint8_t> payload, Heartbeat& h) {
     next = first + length;
   }
   for (auto& share : h.roster) share.digest = static_cast<uint32_t>(reader.bigEndian(4));
+  if (hasLanded(h.phase)) h.learnt = static_cast<uint32_t>(reader.bigEndian(4));
   if (!reader.failed() && reader.remaining() > 0) {
     const uint64_t battery = reader.varint(), depth = reader.varint();
     if (battery > 101 || depth > uint64_t{INT32_MAX} + 1) return false;

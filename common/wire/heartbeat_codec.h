@@ -23,6 +23,11 @@ enum class Phase : uint8_t {
   kListening = 4  ///< its source has ended; it will look at its map again when all of the team have landed
 };
 
+/// A robot whose source has ended: what it has learnt changes no more.
+constexpr bool hasLanded(Phase phase) {
+  return phase == Phase::kLanded || phase == Phase::kLeaving || phase == Phase::kListening;
+}
+
 /// How a node is doing, as it says about once a second. Its channel says who it is.
 struct Heartbeat {
   /// What a fusing node holds of one robot: equal digests, nothing to repair.
@@ -59,7 +64,8 @@ struct Heartbeat {
   std::array<int64_t, kNumClasses> class_bytes{};  ///< bytes_sent by traffic class, each >= 0
   int32_t battery_percent = -1;                    ///< of its vehicle, in [0, 100]; -1: not known
   int32_t depth_cm = -1;                           ///< of its vehicle below the surface, >= 0; -1: not known
-  std::vector<Share> roster;                       ///< ascending by robot; at most kMaxRoster
+  uint32_t learnt = 0;        ///< shareDigest() of its own topics and settings; 0 of who has not landed
+  std::vector<Share> roster;  ///< ascending by robot; at most kMaxRoster
   bool operator==(const Heartbeat&) const = default;
 };
 
@@ -67,7 +73,7 @@ struct Heartbeat {
 constexpr uint32_t shareDigest(uint64_t digest) { return static_cast<uint32_t>(digest ^ digest >> 32); }
 
 /// A heartbeat as heartbeat_t: 142 bytes, 7 to 70 for the classes, about 4 a robot of the roster,
-/// 2 to 6 for battery and depth when either is known.
+/// 4 of who has landed, 2 to 6 for battery and depth when either is known.
 ///
 /// A roster that does not fit is cut at its high end; 256 robots fit when their numbers have few gaps.
 /// @throws std::invalid_argument naming what is out of range, or when `max_payload` is below 200.

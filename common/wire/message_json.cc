@@ -52,6 +52,7 @@ json fields(const Heartbeat& h) {
   for (size_t c = 0; c < kClasses.size(); ++c) j["class_bytes"][kClasses[c]] = h.class_bytes[c];
   j["battery_percent"] = h.battery_percent < 0 ? json() : json(h.battery_percent);
   j["depth_cm"] = h.depth_cm < 0 ? json() : json(h.depth_cm);
+  j["learnt"] = hasLanded(h.phase) ? json(h.learnt) : json();
   j["roster"] = json::array();
   for (const auto& share : h.roster) j["roster"].push_back(json::array({number(share.robot), share.digest}));
   return j;

@@ -22,19 +22,37 @@ constexpr int32_t kMission = 5;
 
 class RollCallTest : public testing::Test {
  protected:
-  // What a robot has to say in all.
+  // What a robot has learnt.
   static mapping::Piece pieceOf(int robot) {
     return mapping::pieceOf(RobotId{robot}, 0, {.words = 1, .hyperparameters = 2, .cell_size_m = 1});
   }
+  static mapping::Piece topicOf(int robot, int topic) {
+    return {{RobotId{robot}, mapping::PieceKind::kTopic, {topic, 0, 0}},
+            {0, 7},
+            0,
+            1,
+            mapping::TopicPart{{1}, 1, {10}, {{1, 1}}}};
+  }
+  static mapping::Piece brickOf(int robot) {
+    return {{RobotId{robot}, mapping::PieceKind::kBrick, {0, 0, 0}},
+            {0, 7},
+            0,
+            1,
+            mapping::BrickPart{{{{0, 0, 0}, world::TopicId{1}, {10}}}}};
+  }
   void tell(int robot) { heard_.apply(pieceOf(robot)); }
   void beat(int robot, Phase phase, int32_t budget = 2000) {
+    beatWith({pieceOf(robot)}, robot, phase, budget);
+  }
+  void beatWith(const std::vector<mapping::Piece>& said, int robot, Phase phase, int32_t budget = 2000) {
     mapping::BeliefStore own;
-    own.apply(pieceOf(robot));
+    for (const mapping::Piece& piece : said) own.apply(piece);
     wire::Heartbeat h;
     h.time = {++time_};
     h.mission = kMission;
     h.phase = phase;
     h.own_digest = own.digestOf(RobotId{robot});
+    if (wire::hasLanded(phase)) h.learnt = wire::shareDigest(own.learntDigestOf(RobotId{robot}));
     h.budget = budget;
     heard_.hear({comms::channelName(world::name(RobotId{robot}), "HEARTBEAT"), wire::encode(h)}, stats_);
   }
@@ -62,6 +80,23 @@ TEST_F(RollCallTest, WaitsForThoseThatFlyAndForAllThatTheyHadToSay) {
   EXPECT_TRUE(call_.silent(102).empty());
 }
 
+TEST_F(RollCallTest, TopicsAreWaitedForAndMapsAreNot) {
+  tell(0);
+  beat(0, Phase::kListening);
+  tell(2);
+  const std::vector<mapping::Piece> said{pieceOf(2), topicOf(2, 1), topicOf(2, 3), brickOf(2)};
+  for (const mapping::Piece& topic : {topicOf(2, 1), topicOf(2, 3)}) {
+    beatWith(said, 2, Phase::kListening);
+    EXPECT_EQ(missing(101), Names{"R02"});
+    heard_.apply(topic);
+  }
+  beatWith(said, 2, Phase::kFlying);
+  EXPECT_EQ(missing(101), Names{"R02"});
+  beatWith(said, 2, Phase::kListening);
+  EXPECT_EQ(missing(101), Names{});
+  EXPECT_FALSE(heard_.holdsWhole("R02"));
+}
+
 // Who has looked again has changed its map since, of which we may not hold all yet. What it has learnt we
 // have.
 TEST_F(RollCallTest, OnceIsEnough) {
@@ -70,11 +105,7 @@ TEST_F(RollCallTest, OnceIsEnough) {
   beat(0, Phase::kListening);
   beat(2, Phase::kLanded);
   EXPECT_EQ(missing(101), Names{});
-  heard_.apply({{RobotId{0}, mapping::PieceKind::kTopic, {1, 0, 0}},
-                {0, 7},
-                0,
-                1,
-                mapping::TopicPart{{1}, 1, {10}, {{1, 1}}}});
+  heard_.apply(topicOf(0, 1));
   beat(0, Phase::kLanded);
   EXPECT_EQ(missing(102), Names{});
 }

@@ -329,7 +329,8 @@ Heartbeat noiseHeartbeat(int num_robots, int robot_gap, Random& random) {
   h.epoch = count();
   h.observation = random.below(3) == 0 ? -1 : count();
   h.num_observations = count();
-  h.phase = static_cast<Phase>(random.below(4));
+  h.phase = static_cast<Phase>(random.below(5));
+  if (hasLanded(h.phase)) h.learnt = static_cast<uint32_t>(random());
   h.num_topics = below(random, 10001);
   h.num_cells = count();
   for (uint64_t* digest : {&h.own_digest, &h.state_digest, &h.map_digest, &h.map_of_state, &h.vocabulary})

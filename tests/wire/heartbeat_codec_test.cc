@@ -41,9 +41,27 @@ TEST(HeartbeatCodecTest, BatteryAndDepthTakeRoomWhenTheyAreKnown) {
   EXPECT_EQ(size(87, std::numeric_limits<int32_t>::max()), without + 6);
 }
 
+TEST(HeartbeatCodecTest, WhoHasLandedSaysWhatItHasLearnt) {
+  Heartbeat heartbeat;
+  const size_t without = encode(heartbeat).size();
+  for (const Phase phase : {Phase::kLanded, Phase::kLeaving, Phase::kListening}) {
+    heartbeat.phase = phase;
+    for (const uint32_t learnt : {0u, 1u, 0xffffffffu}) {
+      heartbeat.learnt = learnt;
+      const Bytes bytes = encode(heartbeat);
+      EXPECT_EQ(bytes.size(), without + 4);
+      EXPECT_EQ(*decodeHeartbeat(bytes), heartbeat);
+    }
+  }
+  for (const Phase phase : {Phase::kFlying, Phase::kNode}) {
+    heartbeat.phase = phase;
+    EXPECT_THROW(encode(heartbeat), std::invalid_argument);
+  }
+}
+
 TEST(HeartbeatCodecTest, IsSmallForTwelveRobots) {
   Random random(2);
-  for (int trial = 0; trial < 100; ++trial) EXPECT_LT(encode(noiseHeartbeat(12, 1, random)).size(), 260u);
+  for (int trial = 0; trial < 100; ++trial) EXPECT_LT(encode(noiseHeartbeat(12, 1, random)).size(), 264u);
 }
 
 TEST(HeartbeatCodecTest, HoldsARosterOf256Robots) {

@@ -49,6 +49,7 @@ PIECE_KINDS = {1: "TOPICS", 2: "BRICK", 3: "CERTAINTY", 4: "EDIT", 5: "PICTURE",
 TRAFFIC_CLASSES = ["heartbeat", "matches", "topics", "bricks", "certainty", "pictures", "local"]
 OPERATIONS = ["name", "link", "unlink", "exclude", "undo"]
 PHASES = ["flying", "landed", "leaving", "node", "listening"]
+HAVE_LANDED = (1, 2, 4)
 UNSIGNED = {"own_digest", "state_digest", "map_digest", "map_of_state", "vocabulary", "words", "hyperparameters"}
 
 

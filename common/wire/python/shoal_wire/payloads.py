@@ -7,8 +7,8 @@ import re
 from . import cells
 from .cell_field import CellField, Geometry
 from .errors import BadMessage, require
-from .layout import (MAX_CELLS, MAX_LABEL, MAX_LAYER, MAX_ROBOT, MAX_TIME, MAX_TOPIC, MAX_TOPICS, MAX_VOCABULARY,
-                     MAX_WORDS, OPERATIONS, OPERATORS, PHASES, TRAFFIC_CLASSES)
+from .layout import (HAVE_LANDED, MAX_CELLS, MAX_LABEL, MAX_LAYER, MAX_ROBOT, MAX_TIME, MAX_TOPIC, MAX_TOPICS,
+                     MAX_VOCABULARY, MAX_WORDS, OPERATIONS, OPERATORS, PHASES, TRAFFIC_CLASSES)
 from .range_coder import Bits, Models
 
 
@@ -39,7 +39,11 @@ def _read_heartbeat(m, payload):
     require(len(payload) - at >= 4 * len(robots), "the payload ends early", "bad payload")
     m["roster"] = [(robot, int.from_bytes(payload[at + 4 * i:at + 4 * i + 4], "big")) for i, robot in enumerate(robots)]
     at += 4 * len(robots)
-    m["battery_percent"] = m["depth_cm"] = None
+    m["learnt"] = m["battery_percent"] = m["depth_cm"] = None
+    if m["phase"] in HAVE_LANDED:
+        require(len(payload) - at >= 4, "the payload ends early", "bad payload")
+        m["learnt"] = int.from_bytes(payload[at:at + 4], "big")
+        at += 4
     if at < len(payload):
         battery, depth = varint(), varint()
         require(battery <= 101 and depth <= 2**31, "battery or depth", "bad payload")
