@@ -393,7 +393,8 @@ try {
   const finally_ = Number((await lossy.locator("#counts").innerText()).split(" ")[0].replace(/,/g, ""));
   const known = async (path) => (await fetch(new URL(path, lossyUrl))).json();
   let unsure = null;
-  for (const t of (await known("/api/mission")).times_s.reverse().filter((t) => t < 11)) // before the last image
+  const times = (await known("/api/mission")).times_s, flown = times.findIndex((t) => t >= 11); // from the last image on
+  for (const t of [...times.slice(0, flown).reverse(), ...times.slice(flown)])
     if ((await known(`/api/holding?node=OPERATOR&at=${t}`)).shares?.some((s) => !s.certain && s.robot.startsWith("R"))) { unsure = t; break; }
   assert.ok(unsure !== null, "there was a time of which nobody knows");
   await lossy.goto(new URL(`/#t=${unsure}&node=OPERATOR`, lossyUrl).href);
