@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fusion_node/mission_keys.h"
 
+#include <algorithm>
+
 #include "fusion_node/near_word.h"
 
 namespace shoal::fusion_node {
