@@ -108,7 +108,7 @@ void Node::turn(int timeout_ms) {
   warnOfStrangers();
   checkLibrary();
   warnOfMixtures();
-  if (options_.rate == 0) follow(state_.latestTime().us);
+  if (options_.rate == 0) clock_.advanceTo(state_.latestTime().us);
 
   const int64_t wall = wallMs();
   if (state_.mapIsStale() && wall - fused_at_ms_ >= kFusePeriodMs) {
@@ -136,16 +136,10 @@ void Node::turn(int timeout_ms) {
   }
   publishMap();
   const int64_t now_us = clock_.now();
+  onDisk([&] { memory_->keepClock(now_us); });
   repair_.pump(now_us);
   sender_.pump(now_us);
   if (queries_) queries_->poll();
-}
-
-// Who came back knows what time it was when it last kept something, and not how long it was heard after that.
-void Node::follow(int64_t others_us) {
-  const bool goes_on = others_us > clock_.now();
-  clock_.advanceTo(others_us);
-  if (goes_on && std::exchange(came_back_, false)) sender_.assumeExhausted(others_us);
 }
 
 void Node::hear(const comms::Packet& packet) {
@@ -186,8 +180,7 @@ void Node::recall() {
   }
   const double passed_us = options_.rate * static_cast<double>(gap.us);
   clock_.advanceTo(clock->mission_us + std::llround(passed_us));
-  sender_.assumeExhausted(clock_.now());
-  came_back_ = true;
+  sender_.assumeExhausted(std::max(clock_.now(), clock->spoken_until_us));
   spdlog::info("comes back with {} pieces of {} robots, at {:.1f} s", state_.beliefs().numPieces(),
                state_.beliefs().robots().size(), static_cast<double>(clock_.now()) * 1e-6);
 }

@@ -61,7 +61,6 @@ class Node {
 
  private:
   comms::Packet heartbeat(int64_t now_us);
-  void follow(int64_t others_us);
   void hear(const comms::Packet& packet);
   void keep(const comms::Packet& packet, bool is_new);
   void commit();
@@ -98,7 +97,6 @@ class Node {
   mapping::MapChanges map_changes_;   // as consoles were told
   SilenceAlarm silence_;
   std::map<std::string, size_t> num_chunks_;  // in the send queue, by channel
-  bool came_back_ = false;                    // and at rate 0 has not heard yet what time it is
   size_t warned_of_strangers_ = 0;
   bool warned_of_library_ = false;
   std::set<std::pair<std::string, std::string>> warned_of_;  // kinds and nodes of mixtures

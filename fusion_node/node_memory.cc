@@ -3,19 +3,29 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdlib>
 #include <filesystem>
 #include <system_error>
 
 #include "fusion_node/limits.h"
-#include "shoal/comms/channels.h"
 #include "shoal/wire/heartbeat_codec.h"
 #include "shoal/wire/message_kind.h"
+#include "shoal/world/mission_time.h"
 
 namespace shoal::fusion_node {
 namespace {
 
 constexpr int64_t kHeartbeatEveryUs = 10'000'000;
-const std::string kBootId = "boot_id", kBootUs = "boot_us";  // of the last own heartbeat
+constexpr int64_t kClockEveryUs = 2'000'000;
+constexpr int64_t kLatestUs = world::kMaxTimeUs / 2;  // 73,000 years: what is later leaves no room to go on
+const std::string kMissionUs = "mission_us", kWallUs = "wall_us", kBootUs = "boot_us", kBootId = "boot_id";
+
+std::optional<int64_t> number(const std::string& text) {
+  int64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
 
 std::string madeIn(const std::string& folder, int32_t mission) {
   std::filesystem::create_directories(folder);
@@ -29,50 +39,53 @@ std::string missionFilePath(const std::string& state_dir, int32_t mission) {
 }
 
 NodeMemory::NodeMemory(const std::string& folder, const std::string& node, int32_t mission)
-    : path_(madeIn(folder, mission)), node_(node), mission_(mission), file_(path_, node, mission) {}
+    : path_(madeIn(folder, mission)), mission_(mission), file_(path_, node, mission) {}
 
 std::optional<NodeMemory::Clock> NodeMemory::recall(MissionState& state) {
-  std::optional<Clock> clock;
-  const std::string own = comms::channelName(node_, "HEARTBEAT");
   comms::Stats passed_over;
   MissionFileReader file(path_);
   while (const auto event = file.next()) {
     const auto header = wire::peek(event->packet.bytes);
-    if (!header || header->mission != mission_) continue;
-    state.hear(event->packet, passed_over);
-    if (event->packet.channel == own)
-      clock = {.mission_us = header->time.us, .at = {.wall_us = event->time_us, .boot_us = 0, .boot_id = {}}};
+    if (header && header->mission == mission_) state.hear(event->packet, passed_over);
   }
-  const std::string boot_us = file_.get(kBootUs);
-  if (clock &&
-      std::from_chars(boot_us.data(), boot_us.data() + boot_us.size(), clock->at.boot_us).ec == std::errc{})
-    clock->at.boot_id = file_.get(kBootId);
   const std::vector<mapping::MissionEvent> events = file_.events();
   if (!events.empty()) last_event_ = events.back();
   state.restoreEvents(events);
-  return clock;
+
+  const auto mission_us = number(file_.get(kMissionUs)), wall_us = number(file_.get(kWallUs)),
+             boot_us = number(file_.get(kBootUs));
+  if (!mission_us || *mission_us < 0 || *mission_us > kLatestUs || !wall_us) return std::nullopt;
+  return Clock{.mission_us = *mission_us,
+               .spoken_until_us = *mission_us + kClockEveryUs,
+               .at = {*wall_us, boot_us.value_or(0), boot_us ? file_.get(kBootId) : ""}};
+}
+
+void NodeMemory::keepClock(int64_t mission_us) {
+  if (clock_us_ && mission_us < *clock_us_ + kClockEveryUs) return;
+  clock_us_ = mission_us;
+  const Moment now = thisMoment();
+  file_.set(kMissionUs, std::to_string(mission_us));
+  file_.set(kWallUs, std::to_string(now.wall_us));
+  file_.set(kBootUs, std::to_string(now.boot_us));
+  file_.set(kBootId, now.boot_id);
+  file_.commit();
 }
 
 void NodeMemory::keep(const comms::Packet& packet, bool is_new) {
   if (packet.channel.ends_with("_HEARTBEAT")) {
-    const auto header = wire::peek(packet.bytes);
-    if (!header || header->mission != mission_) return;
-    if (!heartbeat_kept_.contains(packet.channel) && heartbeat_kept_.size() >= kMaxNodes) return;
     const auto heartbeat = wire::decodeHeartbeat(packet.bytes);
-    const Kept now{header->time.us, heartbeat ? heartbeat->phase : wire::Phase::kFlying};
+    if (!heartbeat || heartbeat->mission != mission_) return;
+    if (!heartbeat_kept_.contains(packet.channel) && heartbeat_kept_.size() >= kMaxNodes) return;
+    const Kept now{heartbeat->time.us, heartbeat->phase};
     const auto [kept, first] = heartbeat_kept_.try_emplace(packet.channel, now);
-    if (!first && now.time_us - kept->second.time_us < kHeartbeatEveryUs && now.phase == kept->second.phase)
+    if (!first && std::abs(now.time_us - kept->second.time_us) < kHeartbeatEveryUs &&
+        now.phase == kept->second.phase)
       return;
     kept->second = now;
   } else if (!is_new) {
     return;
   }
-  const Moment now = thisMoment();
-  file_.append(packet, now.wall_us);
-  if (packet.channel == comms::channelName(node_, "HEARTBEAT")) {
-    file_.set(kBootId, now.boot_id);
-    file_.set(kBootUs, std::to_string(now.boot_us));
-  }
+  file_.append(packet, thisMoment().wall_us);
   has_kept_ = true;
 }
 

@@ -24,18 +24,25 @@ std::string missionFilePath(const std::string& state_dir, int32_t mission);
 /// mission's history, a few bytes more than what was heard for the first time.
 class NodeMemory {
  public:
-  /// @param node  The node whose memory it is: its heartbeats are kept too, for its clock.
+  /// @param node  The node whose memory it is.
   /// @throws std::runtime_error as MissionFile.
   NodeMemory(const std::string& folder, const std::string& node, int32_t mission);
 
   struct Clock {
-    int64_t mission_us;
-    Moment at;
+    int64_t mission_us;       ///< mission time
+    int64_t spoken_until_us;  ///< at most so late, by mission time, the node has said something
+    Moment at;                ///< when that mission time was
   };
 
-  /// Takes all that was kept into `state`. Returns the node's mission time in its last heartbeat, and when
-  /// that was; nothing when there is none. @throws std::runtime_error naming the file that cannot be read.
+  /// Takes all that was kept into `state`. Returns what was told last to keepClock(); nothing when nothing
+  /// was, or when somebody wrote a time there that cannot be.
+  /// @throws std::runtime_error naming the file that cannot be read.
   std::optional<Clock> recall(MissionState& state);
+
+  /// To be called before the node says anything at that mission time: who comes back knows until when it may
+  /// have spoken. Written for two seconds at once, and safe when it returns. What others say in the node's
+  /// name plays no part in it. @throws std::runtime_error naming the file that cannot be written.
+  void keepClock(int64_t mission_us);
 
   /// A packet was heard, or said by this node itself; `is_new` as MissionState::hear() says.
   /// @throws std::runtime_error naming the file that cannot be written.
@@ -53,10 +60,10 @@ class NodeMemory {
   };
 
   std::string path_;
-  std::string node_;
   int32_t mission_;
   MissionFile file_;
   bool has_kept_ = false;                            // since the last commit
+  std::optional<int64_t> clock_us_;                  // as it was written last
   std::map<std::string, Kept> heartbeat_kept_;       // by channel: the last one
   std::optional<mapping::MissionEvent> last_event_;  // that is in the file
 };

@@ -63,7 +63,9 @@ TEST_F(NodeMemoryTest, StateClockAndEventsComeBack) {
     hear(memory, before, heartbeat(1));
     hear(memory, before, heartbeat(2));  // too soon after the last to be kept
     hear(memory, before, heartbeat(40));
-    before.passTime(100);  // it is lost
+    memory.keepClock(40'000'000);
+    memory.keepClock(41'999'999);  // too soon to be written
+    before.passTime(100);          // it is lost
     hear(memory, before, topic(11));
     memory.commit(before);
   }
@@ -72,6 +74,7 @@ TEST_F(NodeMemoryTest, StateClockAndEventsComeBack) {
   const auto clock = memory.recall(after);
   ASSERT_TRUE(clock);
   EXPECT_EQ(clock->mission_us, 40'000'000);
+  EXPECT_EQ(clock->spoken_until_us, 42'000'000);
   EXPECT_EQ(clock->at.boot_id, thisMoment().boot_id);
   EXPECT_GE(clock->at.boot_us, began.boot_us);
   EXPECT_LE(clock->at.boot_us, thisMoment().boot_us);
@@ -85,20 +88,49 @@ TEST_F(NodeMemoryTest, StateClockAndEventsComeBack) {
 }
 
 // As files of older builds, and those that somebody wrote into.
-TEST_F(NodeMemoryTest, GoesByTheWallClockWhereTheTimeSinceTheMachineWasStartedIsNotKnown) {
-  for (const std::string boot_us : {"", "soon"}) {
+TEST_F(NodeMemoryTest, AClockThatWasMeddledWithIsNotBelieved) {
+  const auto recalled = [&](const std::string& key, const std::string& value) {
     MissionState state(kMission, {});
     NodeMemory memory(dir_, "OPERATOR", kMission);
-    hear(memory, state, heartbeat(1));
-    memory.commit(state);
+    memory.keepClock(1'000'000);
     MissionFile file(missionFilePath(dir_, kMission), "OPERATOR", kMission);
-    file.set("boot_us", boot_us);
+    file.set(key, value);
     file.commit();
-    const auto clock = memory.recall(state);
+    return memory.recall(state);
+  };
+  for (const std::string boot_us : {"", "soon", "12 "}) {
+    const auto clock = recalled("boot_us", boot_us);
     ASSERT_TRUE(clock);
+    EXPECT_EQ(clock->mission_us, 1'000'000);
     EXPECT_EQ(clock->at.boot_id, "") << boot_us;
     EXPECT_GT(clock->at.wall_us, 0);
   }
+  for (const std::string mission_us : {"", "-1", "4611686018427387903", "99999999999999999999"})
+    EXPECT_FALSE(recalled("mission_us", mission_us)) << mission_us;
+  EXPECT_FALSE(recalled("wall_us", "noon"));
+}
+
+// Its own voice comes back to it by the link, and anybody can speak in its name.
+TEST_F(NodeMemoryTest, WhatIsSaidInTheNodesNameMovesNoClock) {
+  {
+    MissionState state(kMission, {});
+    NodeMemory memory(dir_, "OPERATOR", kMission);
+    memory.keepClock(3'000'000);
+    hear(memory, state, heartbeat(4'000'000'000'000));
+    comms::Packet torn = heartbeat(50);
+    torn.bytes.back() ^= 1;
+    hear(memory, state, torn);
+    hear(memory, state, heartbeat(4));  // its own are kept as before
+    memory.commit(state);
+  }
+  MissionState state(kMission, {});
+  NodeMemory memory(dir_, "OPERATOR", kMission);
+  const auto clock = memory.recall(state);
+  ASSERT_TRUE(clock);
+  EXPECT_EQ(clock->mission_us, 3'000'000);
+  size_t kept = 0;
+  for (MissionFileReader file(missionFilePath(dir_, kMission)); file.next();) ++kept;
+  EXPECT_EQ(kept, 2u);
 }
 
 TEST_F(NodeMemoryTest, ARobotThatHasLandedHasLandedStill) {
