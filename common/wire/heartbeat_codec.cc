@@ -44,9 +44,12 @@ std::string fault(const Heartbeat& h) {
   return {};
 }
 
+// Fixed fields, seven varints of class bytes, no run, battery, depth, what was learnt.
+constexpr size_t kMostWithoutRoster = 142 + 7 * 10 + 1 + 1 + 5 + 4;
+
 // Class bytes; then the robots in runs of consecutive numbers, as pairs (numbers left out, length - 1) after
-// the count of runs; then their digests; then, of who has landed, what it has learnt; then, when either is
-// known, battery and depth, each plus one.
+// the count of runs; then their digests; then, when any of the three is
+// known, battery and depth, each plus one; then, when it is, what a robot that has landed has learnt.
 Bytes payloadOf(const Heartbeat& h, size_t num_shares) {
   Bytes out;
   for (const int64_t bytes : h.class_bytes) putVarint(out, static_cast<uint64_t>(bytes));
@@ -66,11 +69,11 @@ Bytes payloadOf(const Heartbeat& h, size_t num_shares) {
   putVarint(out, num_runs);
   out.insert(out.end(), runs.begin(), runs.end());
   for (size_t i = 0; i < num_shares; ++i) putBigEndian(out, h.roster[i].digest, 4);
-  if (hasLanded(h.phase)) putBigEndian(out, h.learnt, 4);
-  if (h.battery_percent >= 0 || h.depth_cm >= 0) {
+  if (h.battery_percent >= 0 || h.depth_cm >= 0 || h.learnt != 0) {
     putVarint(out, static_cast<uint64_t>(h.battery_percent + 1));
     putVarint(out, static_cast<uint64_t>(int64_t{h.depth_cm} + 1));
   }
+  if (h.learnt != 0) putBigEndian(out, h.learnt, 4);
   return out;
 }
 
@@ -87,12 +90,12 @@ bool readPayload(std::span<const uint8_t> payload, Heartbeat& h) {
     next = first + length;
   }
   for (auto& share : h.roster) share.digest = static_cast<uint32_t>(reader.bigEndian(4));
-  if (hasLanded(h.phase)) h.learnt = static_cast<uint32_t>(reader.bigEndian(4));
   if (!reader.failed() && reader.remaining() > 0) {
     const uint64_t battery = reader.varint(), depth = reader.varint();
     if (battery > 101 || depth > uint64_t{INT32_MAX} + 1) return false;
     h.battery_percent = static_cast<int32_t>(battery) - 1;
     h.depth_cm = static_cast<int32_t>(static_cast<int64_t>(depth) - 1);
+    if (!reader.failed() && reader.remaining() > 0) h.learnt = static_cast<uint32_t>(reader.bigEndian(4));
   }
   return !reader.failed();
 }
@@ -132,8 +135,9 @@ Bytes encodeValid(const Heartbeat& h, size_t num_shares) {
 Bytes encode(const Heartbeat& h, size_t max_payload) {
   if (const std::string why = fault(h); !why.empty()) throw std::invalid_argument("heartbeat: " + why);
   max_payload = std::min(max_payload, kMaxMessageBytes);
-  if (max_payload < 200) {
-    throw std::invalid_argument("heartbeat: needs 200 bytes, allowed are " + std::to_string(max_payload));
+  if (max_payload < kMostWithoutRoster) {
+    throw std::invalid_argument("heartbeat: needs " + std::to_string(kMostWithoutRoster) +
+                                " bytes, allowed are " + std::to_string(max_payload));
   }
   for (size_t num_shares = h.roster.size();; --num_shares) {
     Bytes bytes = encodeValid(h, num_shares);

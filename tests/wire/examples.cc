@@ -186,6 +186,10 @@ std::vector<Example> goldenExamples() {
   const world::Timestamp time{61'500'000};
   std::vector<Example> examples;
   examples.push_back({"heartbeat", MessageKind::kHeartbeat, encode(heartbeat())});
+  Heartbeat landed = heartbeat();
+  landed.phase = Phase::kListening;
+  landed.learnt = 0x89abcdef;
+  examples.push_back({"heartbeat_landed", MessageKind::kHeartbeat, encode(landed)});
   examples.push_back({"topics", MessageKind::kTopics, encode(topic(), kMission, time)});
   examples.push_back({"topics_shared", MessageKind::kTopics, encode(topics(), kMission, time)});
   examples.push_back({"bricks", MessageKind::kBrick, encode(bricks(), kMission, time)});

@@ -39,15 +39,18 @@ def _read_heartbeat(m, payload):
     require(len(payload) - at >= 4 * len(robots), "the payload ends early", "bad payload")
     m["roster"] = [(robot, int.from_bytes(payload[at + 4 * i:at + 4 * i + 4], "big")) for i, robot in enumerate(robots)]
     at += 4 * len(robots)
-    m["learnt"] = m["battery_percent"] = m["depth_cm"] = None
-    if m["phase"] in HAVE_LANDED:
-        require(len(payload) - at >= 4, "the payload ends early", "bad payload")
-        m["learnt"] = int.from_bytes(payload[at:at + 4], "big")
-        at += 4
+    m["learnt"], m["battery_percent"], m["depth_cm"] = 0 if m["phase"] in HAVE_LANDED else None, None, None
     if at < len(payload):
         battery, depth = varint(), varint()
         require(battery <= 101 and depth <= 2**31, "battery or depth", "bad payload")
-        require(battery or depth, "a battery and a depth that are not known", "not canonical")
+        if at < len(payload):
+            require(len(payload) - at >= 4, "the payload ends early", "bad payload")
+            learnt = int.from_bytes(payload[at:at + 4], "big")
+            at += 4
+            require(learnt, "what was learnt is 0", "not canonical")
+            require(m["phase"] in HAVE_LANDED, "learnt, and not landed")
+            m["learnt"] = learnt
+        require(battery or depth or m["learnt"], "a battery and a depth that are not known", "not canonical")
         m["battery_percent"], m["depth_cm"] = battery - 1 if battery else None, depth - 1 if depth else None
     require(at == len(payload), "bytes after the end of the payload", "not canonical")
     require(all(count < 2**63 for count in m["class_bytes"].values()), "class_bytes")
