@@ -46,16 +46,23 @@ std::vector<Gap> TrafficAudit::gapsOf(const Life& life) {
 std::vector<NodeTraffic> TrafficAudit::traffic() const {
   std::vector<NodeTraffic> traffic;
   for (const auto& [node, lives] : lives_) {
-    comms::WindowMeter meter(0);
-    int64_t budget = -1, last_us = 0;
-    for (const Life& life : lives) {
-      const auto [first, last] = std::ranges::minmax(life.sent, {}, &Sent::at_us);
-      if (life.budget != budget || first.at_us < last_us) meter = comms::WindowMeter(life.budget);
-      budget = life.budget;
-      last_us = last.at_us;
-      for (const Sent& sent : life.sent) meter.add(sent.at_us, sent.bytes);
-      traffic.push_back({node, life.pid, life.budget, life.bytes, life.sent.size(), meter.worst(first.at_us),
-                         gapsOf(life)});
+    for (auto life = lives.begin(); life != lives.end();) {
+      // All that have one budget together.
+      comms::WindowMeter meter(life->budget);
+      std::vector<int64_t> from_us;
+      const auto oldest = life;
+      for (int64_t last_us = 0; life != lives.end() && life->budget == oldest->budget; ++life) {
+        const auto [first, last] = std::ranges::minmax(life->sent, {}, &Sent::at_us);
+        if (life != oldest && first.at_us < last_us) break;
+        last_us = last.at_us;
+        from_us.push_back(first.at_us);
+        for (const Sent& sent : life->sent) meter.add(sent.at_us, sent.bytes);
+      }
+      const std::vector<comms::MeteredWindow> worst = meter.worstEndingIn(from_us);
+      for (size_t i = 0; i < worst.size(); ++i) {
+        const Life& one = oldest[static_cast<ptrdiff_t>(i)];
+        traffic.push_back({node, one.pid, one.budget, one.bytes, one.sent.size(), worst[i], gapsOf(one)});
+      }
     }
   }
   return traffic;

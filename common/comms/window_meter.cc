@@ -2,8 +2,11 @@
 #include "shoal/comms/window_meter.h"
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 #include <string>
+
+#include "shoal/demand.h"
 
 namespace shoal::comms {
 namespace {
@@ -58,6 +61,31 @@ class Hull {
   std::vector<Start> hull_;
 };
 
+// The worst of those that end in one stretch of time.
+struct Worst {
+  MeteredWindow alone;    // the largest single datagram
+  MeteredWindow several;  // the steepest window of two or more
+};
+
+MeteredWindow worseOf(Worst worst, int64_t bytes_per_s) {
+  auto& [alone, several] = worst;
+  if (bytes_per_s == 0) {
+    return several.length_us != 0 && steeper(several.bytes, several.length_us, alone.bytes, kSecondUs)
+               ? several
+               : alone;
+  }
+  const auto allowed = [&](int64_t length_us) {
+    return static_cast<double>(bytes_per_s) * static_cast<double>(length_us) / static_cast<double>(kSecondUs);
+  };
+  if (alone.bytes > 0) alone.share = std::min(1.0, static_cast<double>(alone.bytes) / allowed(kSecondUs));
+  if (several.length_us != 0) {
+    several.share = static_cast<double>(several.bytes) / allowed(several.length_us);
+    several.within_budget = Wide{several.bytes} * kSecondUs <= Wide{bytes_per_s} * several.length_us;
+  }
+  if (several.length_us == 0) return alone;
+  return !several.within_budget || several.share > alone.share ? several : alone;
+}
+
 }  // namespace
 
 WindowMeter::WindowMeter(int64_t bytes_per_s) : bytes_per_s_(bytes_per_s) {
@@ -69,12 +97,17 @@ WindowMeter::WindowMeter(int64_t bytes_per_s) : bytes_per_s_(bytes_per_s) {
 
 void WindowMeter::add(int64_t at_us, size_t bytes) { sent_.push_back({at_us, static_cast<int64_t>(bytes)}); }
 
-MeteredWindow WindowMeter::worst(int64_t ending_from_us) const {
+MeteredWindow WindowMeter::worst() const {
+  return worstEndingIn({std::numeric_limits<int64_t>::min()}).front();
+}
+
+std::vector<MeteredWindow> WindowMeter::worstEndingIn(const std::vector<int64_t>& from_us) const {
+  SHOAL_DEMAND(std::ranges::is_sorted(from_us));
   std::vector<Sent> sent = sent_;
   std::ranges::stable_sort(sent, {}, &Sent::at_us);
 
-  MeteredWindow alone;    // the largest single datagram
-  MeteredWindow several;  // the steepest window of two or more
+  std::vector<Worst> worst(from_us.size());
+  size_t stretch = 0;  // one more than that of the present end; 0: before the first
   std::vector<Start> starts;
   Hull hull;         // starts at least 1 s before the present end
   size_t young = 0;  // the first start that is not
@@ -83,11 +116,12 @@ MeteredWindow WindowMeter::worst(int64_t ending_from_us) const {
     const int64_t end_us = sent[j].at_us;
     starts.push_back({end_us, bytes, j});
     bytes += sent[j].bytes;
-    if (end_us >= ending_from_us && sent[j].bytes > alone.bytes)
-      alone = {end_us, kSecondUs, sent[j].bytes, 1, 0, true};
     for (; end_us - starts[young].at_us >= kSecondUs; ++young) hull.add(starts[young]);
-    if (end_us < ending_from_us) continue;
+    while (stretch < from_us.size() && from_us[stretch] <= end_us) ++stretch;
+    if (stretch == 0) continue;
 
+    auto& [alone, several] = worst[stretch - 1];
+    if (sent[j].bytes > alone.bytes) alone = {end_us, kSecondUs, sent[j].bytes, 1, 0, true};
     const auto consider = [&](const Start& start, int64_t length_us) {
       if (start.index == j) return;
       const int64_t inside = bytes - start.before;
@@ -101,22 +135,9 @@ MeteredWindow WindowMeter::worst(int64_t ending_from_us) const {
     }
   }
 
-  if (bytes_per_s_ == 0) {
-    return several.length_us != 0 && steeper(several.bytes, several.length_us, alone.bytes, kSecondUs)
-               ? several
-               : alone;
-  }
-  const auto allowed = [&](int64_t length_us) {
-    return static_cast<double>(bytes_per_s_) * static_cast<double>(length_us) /
-           static_cast<double>(kSecondUs);
-  };
-  if (alone.bytes > 0) alone.share = std::min(1.0, static_cast<double>(alone.bytes) / allowed(kSecondUs));
-  if (several.length_us != 0) {
-    several.share = static_cast<double>(several.bytes) / allowed(several.length_us);
-    several.within_budget = Wide{several.bytes} * kSecondUs <= Wide{bytes_per_s_} * several.length_us;
-  }
-  if (several.length_us == 0) return alone;
-  return !several.within_budget || several.share > alone.share ? several : alone;
+  std::vector<MeteredWindow> windows;
+  for (const Worst& of_stretch : worst) windows.push_back(worseOf(of_stretch, bytes_per_s_));
+  return windows;
 }
 
 }  // namespace shoal::comms

@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 namespace shoal::comms {
@@ -31,8 +30,11 @@ class WindowMeter {
 
   /// The window with the largest bytes / max(bytes_per_s x T, the datagram when it stands alone); of equal
   /// ones the earliest to end. Cost: O(n log n).
-  /// @param ending_from_us  windows that end earlier are left out.
-  MeteredWindow worst(int64_t ending_from_us = std::numeric_limits<int64_t>::min()) const;
+  MeteredWindow worst() const;
+
+  /// The same of several stretches of time, in one go: of the windows that end in [from_us[k], from_us[k +
+  /// 1]), the last without an end, wherever they begin. @param from_us  ascending.
+  std::vector<MeteredWindow> worstEndingIn(const std::vector<int64_t>& from_us) const;
 
  private:
   struct Sent {
