@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What people type wrong, and what the programs say then.
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -297,6 +298,24 @@ TEST_F(MissionFileTest, FlagsOfTheOtherProgramsAreNoTypingErrors) {
     const std::string said = saidBy(program, keys);
     EXPECT_EQ(said.find("nothing is known"), std::string::npos) << program.path << ": " << said;
   }
+}
+
+// --since is a flag of area, --single one of launch.
+TEST_F(MissionFileTest, FlagsOfTheOtherCommandsAreNoTypingErrors) {
+  std::ofstream(file_) << "single = true\nsnice = 3\nsincee = 3\n";
+  const std::string said = console("area 4 --run nowhere --config " + file_).output;
+  EXPECT_EQ(said.find("\"single\""), std::string::npos) << said;
+  EXPECT_NE(said.find("\"sincee\"; did you mean \"since\"?"), std::string::npos) << said;
+}
+
+// Who opened it a second time would wait for ever.
+TEST_F(MissionFileTest, APipeIsReadOnce) {
+  const std::string pipe = temporaryFolder() + "/pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  const Outcome outcome =
+      run("/bin/sh", "-c 'echo budget = 500 >" + pipe +
+                         " & exec timeout 20 " BIN "/fusion_node --node nobody --config " + pipe + "'");
+  EXPECT_EQ(outcome.exit_code, 2) << outcome.output;
 }
 
 }  // namespace
