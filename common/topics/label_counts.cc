@@ -13,7 +13,7 @@
 namespace shoal::topics {
 namespace {
 
-constexpr int32_t kLanes = 4;             // labels summed together; a fixed count lets any compiler vectorise
+constexpr int32_t kSummedTogether = 4;    // labels summed together; a fixed count lets any compiler vectorise
 constexpr int64_t kParts = 256;           // counts and priors are scaled by this, to be integers
 constexpr int64_t kSmallCount = 1 << 12;  // logarithms of counts below are looked up
 
@@ -26,7 +26,7 @@ std::vector<world::WordGroup> checked(std::vector<world::WordGroup> groups, int3
     }
     end += group.size;
   }
-  if (end < 1 || end * (num_labels + kLanes) > int64_t{1} << 31) {
+  if (end < 1 || end * (num_labels + kSummedTogether) > int64_t{1} << 31) {
     throw std::invalid_argument(
         "the vocabulary must have at least 1 word and times max_topics at most 2^31, got " +
         std::to_string(end));
@@ -38,7 +38,7 @@ std::vector<world::WordGroup> checked(std::vector<world::WordGroup> groups, int3
 
 LabelCounts::LabelCounts(std::vector<world::WordGroup> groups, int32_t num_labels, double beta)
     : groups_(checked(std::move(groups), num_labels)),
-      stride_((num_labels + kLanes - 1) / kLanes * kLanes),
+      stride_((num_labels + kSummedTogether - 1) / kSummedTogether * kSummedTogether),
       prior_(std::max(int64_t{1}, static_cast<int64_t>(std::floor(beta * kParts + 0.5)))) {
   for (int64_t n = 0; n < kSmallCount; ++n) {
     log_of_.push_back(fixedLog2(static_cast<uint64_t>(kParts * n + prior_)));
@@ -64,8 +64,8 @@ void LabelCounts::logLikelihoods(std::span<const world::WordCount> words, int32_
       const auto count = static_cast<uint32_t>(word->count);
       const uint32_t* __restrict row = logs_.data() + at(word->word, 0);
       int64_t* __restrict sum = scores.data();
-      for (int32_t first = 0; first < stride_; first += kLanes) {
-        for (int32_t k = first; k < first + kLanes; ++k)
+      for (int32_t first = 0; first < stride_; first += kSummedTogether) {
+        for (int32_t k = first; k < first + kSummedTogether; ++k)
           sum[k] += static_cast<int64_t>(uint64_t{count} * uint64_t{row[k]});
       }
       total += word->count;
