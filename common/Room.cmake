@@ -24,7 +24,7 @@ endfunction()
 
 # shoal_add_test(NAME matching SOURCES a_test.cc ... LINK shoal::matching ... [TIMEOUT s] [LABELS l]
 # [ENVIRONMENT K=V] [APART]): one executable of GoogleTest cases, each its own ctest entry with a time limit.
-# APART: its files have names in common, and are never compiled together.
+# Its files are compiled together, but for those of APART, which have names in common.
 function(shoal_add_test)
   cmake_parse_arguments(TEST "APART" "NAME;TIMEOUT" "SOURCES;LINK;LABELS;ENVIRONMENT" ${ARGN})
   if(NOT TEST_TIMEOUT)
@@ -43,6 +43,8 @@ function(shoal_add_test)
   add_executable(${TEST_NAME}_tests ${TEST_SOURCES})
   if(TEST_APART)
     set_target_properties(${TEST_NAME}_tests PROPERTIES UNITY_BUILD OFF)
+  else()
+    set_target_properties(${TEST_NAME}_tests PROPERTIES UNITY_BUILD ON)
   endif()
   target_link_libraries(${TEST_NAME}_tests PRIVATE ${TEST_LINK} shoal::base GTest::gtest_main)
   gtest_discover_tests(${TEST_NAME}_tests DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
