@@ -18,7 +18,7 @@ void LinkWatch::heard(const std::string& node, size_t bytes) {
 void LinkWatch::claimed(const std::string& name, const wire::Heartbeat& h) {
   if (!nodes_.contains(name) && nodes_.size() >= kMaxNames) return;
   Node& node = nodes_[name];
-  if (node.pid != h.pid) node.beats.clear();  // another process counts from nothing
+  if (node.pid != h.pid) node = {};  // another process counts from nothing
   node.pid = h.pid;
   if (!node.beats.empty() &&
       (h.time.us <= node.beats.back().time_us || h.bytes_sent < node.beats.back().sent))
@@ -39,6 +39,13 @@ std::optional<double> LinkWatch::shareOf(const std::string& name) const {
   const double share =
       static_cast<double>(last.heard - first.heard) / static_cast<double>(last.sent - first.sent);
   return std::clamp(share, 0.0, 1.0);  // what comes twice, or late, may add up to more
+}
+
+std::optional<int64_t> LinkWatch::missedOf(const std::string& name) const {
+  const auto node = nodes_.find(name);
+  if (node == nodes_.end() || node->second.beats.empty()) return {};
+  const Beat& last = node->second.beats.back();
+  return last.sent - last.heard;
 }
 
 }  // namespace shoal::fusion_node

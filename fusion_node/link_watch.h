@@ -28,6 +28,10 @@ class LinkWatch {
   /// In [0, 1]; nothing before three heartbeats of one life, or where it has sent nothing between them.
   std::optional<double> shareOf(const std::string& node) const;
 
+  /// Bytes that it had said before its last heartbeat and that were not heard. 0 only when all was, from its
+  /// start on: what came twice counts too, below 0. Nothing before it was heard.
+  std::optional<int64_t> missedOf(const std::string& node) const;
+
  private:
   struct Beat {
     int64_t time_us = 0, sent = 0, heard = 0;

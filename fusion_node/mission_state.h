@@ -97,6 +97,8 @@ class MissionState {
   bool holdsWhole(const std::string& robot) const;
   /// True when this robot has landed and all is held that it has learnt: its topics, its settings.
   bool holdsLearnt(const std::string& robot) const;
+  /// LinkWatch::missedOf().
+  std::optional<int64_t> missedOf(const std::string& node) const { return links_.missedOf(node); }
 
   /// Edge of a cell as most robots say, metres; as the heartbeat of the lowest says before that, and the
   /// constructor's before any was heard.

@@ -69,10 +69,13 @@ const StateHoldings::Tree& StateHoldings::made(int32_t share) {
   Tree& tree = trees_[share];
   const world::RobotId robot{share};
   const uint64_t digest = state_.beliefs().digestOf(robot);
-  if (tree.digest == digest) return tree;
-  tree = {digest, {}, {}};
+  const bool is_own = queue_ != nullptr && world::name(robot) == node_;
+  const uint64_t revision = is_own ? queue_->revision() : 0;
+  if (tree.digest == digest && tree.revision == revision) return tree;
+  tree = {digest, revision, {}, {}};
   std::vector<comms::Leaf> leaves;
   state_.beliefs().visitHashesOf(robot, [&](const mapping::Piece& piece, uint64_t hash) {
+    if (is_own && is_unsaid_(piece)) return;
     const uint64_t key = nameOf(piece.key, piece.part).second;
     leaves.push_back({key, versionOf(piece.version), hash});
     tree.pieces.emplace(key, std::pair(piece.key, piece.part));
@@ -134,10 +137,12 @@ std::vector<wire::Heartbeat::Share> StateHoldings::unmet(int64_t now_us) {
   return unmet;
 }
 
-bool StateHoldings::isStillSaid(int32_t share) {
-  if (share == number(mapping::kOperators)) return false;
-  const wire::Heartbeat* owner = lately(world::name(world::RobotId{share}));
-  return owner != nullptr && owner->queue_bytes > 0;
+std::optional<int64_t> StateHoldings::missed(int32_t share) {
+  if (share == number(mapping::kOperators)) return {};
+  const std::string owner = world::name(world::RobotId{share});
+  const wire::Heartbeat* said = lately(owner);
+  if (said == nullptr || said->queue_bytes == 0) return {};
+  return state_.missedOf(owner);
 }
 
 // What a robot says of itself is newer than what anybody else holds of it; when it is not heard, anybody may
@@ -185,6 +190,7 @@ Repair::Repair(const RepairOptions& options, MissionState& state, comms::Sender&
       sender_(sender),
       holdings_(state, options.node, !options.fuses),
       talk_(talkOptions(options), holdings_) {
+  if (options.is_unsaid) holdings_.leaveOut(options.is_unsaid, sender.queue());
   state_.onPiece([this](const mapping::Piece& piece, bool repaired) {
     const auto name = nameOf(piece.key, piece.part);
     talk_.heard(name, versionOf(piece.version), repaired, now_us_);
@@ -253,7 +259,7 @@ int64_t Repair::pump(int64_t now_us) {
     const auto name = talk_.nextRepair(now_us_);
     if (!name) break;
     const mapping::Piece* piece = holdings_.find(*name);
-    if (piece == nullptr || (options_.is_unsaid && options_.is_unsaid(*piece))) continue;
+    if (piece == nullptr) continue;
     const std::string channel = comms::channelName(options_.node, "REPAIR");
     wire::Bytes message = wire::encodeRepair(*piece, options_.mission, {});
     if (message.size() > wire::maxPayload(channel.size())) continue;  // of a version that knew no repairs

@@ -31,9 +31,16 @@ class StateHoldings final : public comms::Holdings {
 
   void setPatient(bool patient) { patient_ = patient; }
 
+  /// Of the share of this node what is still to be said for the first time is not held yet: nobody lacks it.
+  /// @param queue  in which it waits; outlives this.
+  void leaveOut(std::function<bool(const mapping::Piece&)> is_unsaid, const comms::SendQueue& queue) {
+    is_unsaid_ = std::move(is_unsaid);
+    queue_ = &queue;
+  }
+
   const comms::DigestTree& treeOf(int32_t share) override;
   bool isDoubted(int32_t share) override;
-  bool isStillSaid(int32_t share) override;
+  std::optional<int64_t> missed(int32_t share) override;
 
   /// The piece of that name; null when it is not held.
   const mapping::Piece* find(const comms::AntiEntropy::PieceName& piece);
@@ -51,6 +58,7 @@ class StateHoldings final : public comms::Holdings {
  private:
   struct Tree {
     uint64_t digest = 0;
+    uint64_t revision = 0;  // of the queue, where it matters
     comms::DigestTree tree;
     std::map<uint64_t, std::pair<mapping::PieceKey, int32_t>> pieces;  // by key
   };
@@ -61,6 +69,8 @@ class StateHoldings final : public comms::Holdings {
   const MissionState& state_;
   std::string node_;
   bool patient_;
+  std::function<bool(const mapping::Piece&)> is_unsaid_;
+  const comms::SendQueue* queue_ = nullptr;
   int64_t now_us_ = 0;
   std::map<std::string, int64_t> heard_us_;  // nodes, by our clock
   std::map<world::RobotId, int64_t> unmet_since_us_;

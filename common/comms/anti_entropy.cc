@@ -19,6 +19,7 @@ constexpr size_t kFewLeaves = 16;
 
 constexpr int kMaxWantedAttempts = 4;
 constexpr int kSlowestQuestion = 4;  // doublings of the time between two
+constexpr int kMostQuestions = 3;    // about what was missed of a share that is still said
 
 constexpr int64_t kMicro = 1'000'000;
 
@@ -239,18 +240,21 @@ void AntiEntropy::addQuestions(RepairTalk& talk, size_t& room, int64_t now_us) {
     ++at;
     const auto wanted = wanted_.lower_bound({share, 0});
     const bool is_asked_for = wanted != wanted_.end() && wanted->first.first == share;
-    const bool can_wait = holdings_.isStillSaid(share);
-    if (is_asked_for || (question.attempts == 0 && can_wait)) {
-      question.due_us = now_us + (is_asked_for ? backOff(2, 3) : backOff(8, 12));
+    const std::optional<int64_t> missed = holdings_.missed(share);
+    if (is_asked_for) {
+      question.due_us = now_us + backOff(2, 3);
       question.attempts = 1;
       continue;
     }
+    const uint64_t state = missed ? static_cast<uint64_t>(*missed) : holdings_.treeOf(share).digest();
+    if (missed == 0 || (missed && state == question.state && question.attempts >= kMostQuestions)) {
+      question.due_us = now_us + backOff(3, 5);
+      continue;
+    }
     if (!add(talk, room, about(share, {}, true, talk.salt))) return;
-    const uint64_t digest = holdings_.treeOf(share).digest();
-    question.attempts = digest == question.digest ? std::min(question.attempts + 1, kSlowestQuestion) : 1;
-    question.digest = digest;
-    question.due_us =
-        now_us + (can_wait ? backOff(8, 12) : backOff(3, 5)) * (int64_t{1} << (question.attempts - 1));
+    question.attempts = state == question.state ? std::min(question.attempts + 1, kSlowestQuestion) : 1;
+    question.state = state;
+    question.due_us = now_us + backOff(3, 5) * (int64_t{1} << (question.attempts - 1));
   }
 }
 

@@ -25,8 +25,9 @@ class Holdings {
   /// True while somebody is known to hold something else of a share, and this node should care.
   virtual bool isDoubted(int32_t share) = 0;
 
-  /// True while the owner of a share has not yet said all of it for the first time: asking can wait.
-  virtual bool isStillSaid(int32_t share) = 0;
+  /// While the owner of a share has not yet said all of it for the first time, bytes that were missed of what
+  /// it has said: what else lacks will come. Else nothing.
+  virtual std::optional<int64_t> missed(int32_t share) = 0;
 };
 
 struct AntiEntropyOptions {
@@ -88,7 +89,7 @@ class AntiEntropy {
   struct Question {
     int64_t due_us = 0;
     int attempts = 0;
-    uint64_t digest = 0;  // at the last attempt
+    uint64_t state = 0;  // at the last attempt: what was held, or missed
   };
   struct Answer {
     int64_t due_us = 0;

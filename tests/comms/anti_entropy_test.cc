@@ -124,7 +124,7 @@ class Holder final : public Holdings {
       return DigestTree(other->leavesOf(share)).digest() != treeOf(share).digest();
     });
   }
-  bool isStillSaid(int32_t) override { return false; }
+  std::optional<int64_t> missed(int32_t) override { return {}; }
 
   std::vector<Leaf> leavesOf(int32_t share) const {
     std::vector<Leaf> leaves;
@@ -203,7 +203,7 @@ class CountingHoldings final : public Holdings {
     return tree;
   }
   bool isDoubted(int32_t) override { return true; }
-  bool isStillSaid(int32_t) override { return false; }
+  std::optional<int64_t> missed(int32_t) override { return {}; }
   DigestTree tree;
   int num_trees = 0;
 };
@@ -222,6 +222,44 @@ TEST(AntiEntropyTest, ARepairThatWasNotPlannedHereNeedsNoTree) {
   talk.heard({9, 7}, 3, true, 0);
   EXPECT_EQ(talk.numRepairs(), 1u);
   EXPECT_EQ(holdings.num_trees, 2);
+}
+
+// Somebody else seems to hold more of share 9, always; says how often this node asks about it in a while.
+class Doubtful final : public Holdings {
+ public:
+  const DigestTree& treeOf(int32_t) override { return tree; }
+  bool isDoubted(int32_t) override { return true; }
+  std::optional<int64_t> missed(int32_t) override { return missed_bytes; }
+
+  int questionsIn(int seconds) {
+    int questions = 0;
+    for (const int64_t until_us = now_us + seconds * 1'000'000LL; now_us < until_us; now_us += 1'000'000) {
+      talk.doubt(9, now_us);
+      while (const auto said = talk.nextTalk(now_us)) questions += static_cast<int>(said->statements.size());
+    }
+    return questions;
+  }
+
+  DigestTree tree = DigestTree({leaf(7, 3)});
+  std::optional<int64_t> missed_bytes;
+  AntiEntropy talk{{.seed = 1}, *this};
+  int64_t now_us = 0;
+};
+
+TEST(AntiEntropyTest, WhileTheOwnerSpeaksOnlyWhatWasMissedIsAskedFor) {
+  Doubtful node;
+  node.missed_bytes = 0;
+  EXPECT_EQ(node.questionsIn(600), 0);
+  node.missed_bytes = 250;
+  EXPECT_EQ(node.questionsIn(600), 3);
+  EXPECT_EQ(node.questionsIn(600), 0);
+  node.missed_bytes = 400;  // something was lost again
+  EXPECT_EQ(node.questionsIn(600), 3);
+  node.missed_bytes = std::nullopt;  // it has said all
+  EXPECT_GE(node.questionsIn(20), 2);
+  const int seldom = node.questionsIn(600);  // eight times 3 to 5 s apart
+  EXPECT_GE(seldom, 600 / 40 - 1);
+  EXPECT_LE(seldom, 600 / 24 + 3);
 }
 
 // Share 9 has no owner here. Two nodes, a thousand pieces, and one of them is older here than there.

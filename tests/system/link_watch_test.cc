@@ -80,6 +80,32 @@ TEST(LinkWatchTest, ALinkThatRecoversIsGoodAfterAMinute) {
   EXPECT_EQ(watch.shareOf("R00"), 1.0);
 }
 
+// Hand sums: 1000 bytes were said before the heartbeat, 700 of them heard; the rest comes late.
+TEST(LinkWatchTest, WhatWasMissedIsWhatWasSaidAndNotHeard) {
+  LinkWatch watch;
+  EXPECT_FALSE(watch.missedOf("R00"));
+  wire::Heartbeat beat;
+  beat.pid = 1;
+  watch.claimed("R00", beat);
+  EXPECT_EQ(watch.missedOf("R00"), 0);
+  watch.heard("R00", 700);
+  EXPECT_EQ(watch.missedOf("R00"), 0);  // what was heard since is not missed yet, nor is anything found
+  beat.time.us = 1'000'000;
+  beat.bytes_sent = 1000;
+  watch.claimed("R00", beat);
+  EXPECT_EQ(watch.missedOf("R00"), 300);
+  watch.heard("R00", 300 + 200);  // the late bytes, and the heartbeat itself
+  beat.time.us = 2'000'000;
+  beat.bytes_sent = 1200;
+  watch.claimed("R00", beat);
+  EXPECT_EQ(watch.missedOf("R00"), 0);
+  beat.pid = 2;  // another process; its first message was not heard
+  beat.time.us = 3'000'000;
+  beat.bytes_sent = 50;
+  watch.claimed("R00", beat);
+  EXPECT_EQ(watch.missedOf("R00"), 50);
+}
+
 TEST(LinkWatchTest, ANewProcessCountsFromNothing) {
   LinkWatch watch;
   Talk talk(1.0);

@@ -181,6 +181,7 @@ class Party {
     h.x_m = isRobot() ? x_m_ : 0;
     h.budget = static_cast<int32_t>(budget_);
     h.own_digest = isRobot() ? said_.digestOf(robot_) : 0;
+    h.bytes_sent = static_cast<int64_t>(sender_.stats().linkBytes());
     h.queue_bytes = static_cast<int32_t>(sender_.backlog());
     h.map_of_state = fuses_ ? state_.beliefs().digest() : 0;
     h.roster = repair_.roster(now_us);
