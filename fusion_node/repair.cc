@@ -69,13 +69,10 @@ const StateHoldings::Tree& StateHoldings::made(int32_t share) {
   Tree& tree = trees_[share];
   const world::RobotId robot{share};
   const uint64_t digest = state_.beliefs().digestOf(robot);
-  const bool is_own = queue_ != nullptr && world::name(robot) == node_;
-  const uint64_t revision = is_own ? queue_->revision() : 0;
-  if (tree.digest == digest && tree.revision == revision) return tree;
-  tree = {digest, revision, {}, {}};
+  if (tree.digest == digest) return tree;
+  tree = {digest, {}, {}};
   std::vector<comms::Leaf> leaves;
   state_.beliefs().visitHashesOf(robot, [&](const mapping::Piece& piece, uint64_t hash) {
-    if (is_own && is_unsaid_(piece)) return;
     const uint64_t key = nameOf(piece.key, piece.part).second;
     leaves.push_back({key, versionOf(piece.version), hash});
     tree.pieces.emplace(key, std::pair(piece.key, piece.part));
@@ -84,13 +81,27 @@ const StateHoldings::Tree& StateHoldings::made(int32_t share) {
   return tree;
 }
 
+const comms::DigestTree& StateHoldings::madeOfSaid(int32_t share) {
+  const world::RobotId robot{share};
+  const uint64_t digest = state_.beliefs().digestOf(robot);
+  if (said_.digest == digest && said_.revision == queue_->revision()) return said_.tree;
+  std::vector<comms::Leaf> leaves;
+  state_.beliefs().visitHashesOf(robot, [&](const mapping::Piece& piece, uint64_t hash) {
+    if (!is_unsaid_(piece))
+      leaves.push_back({nameOf(piece.key, piece.part).second, versionOf(piece.version), hash});
+  });
+  said_ = {digest, queue_->revision(), comms::DigestTree(std::move(leaves))};
+  return said_.tree;
+}
+
 const comms::DigestTree& StateHoldings::treeOf(int32_t share) {
   static const comms::DigestTree kNothing;
   if (state_.beliefs().digestOf(world::RobotId{share}) == 0) {
     trees_.erase(share);
     return kNothing;
   }
-  return made(share).tree;
+  const bool is_own = queue_ != nullptr && world::name(world::RobotId{share}) == node_;
+  return is_own ? madeOfSaid(share) : made(share).tree;
 }
 
 const mapping::Piece* StateHoldings::find(const comms::AntiEntropy::PieceName& piece) {
@@ -259,7 +270,7 @@ int64_t Repair::pump(int64_t now_us) {
     const auto name = talk_.nextRepair(now_us_);
     if (!name) break;
     const mapping::Piece* piece = holdings_.find(*name);
-    if (piece == nullptr) continue;
+    if (piece == nullptr || (options_.is_unsaid && options_.is_unsaid(*piece))) continue;
     const std::string channel = comms::channelName(options_.node, "REPAIR");
     wire::Bytes message = wire::encodeRepair(*piece, options_.mission, {});
     if (message.size() > wire::maxPayload(channel.size())) continue;  // of a version that knew no repairs

@@ -58,11 +58,16 @@ class StateHoldings final : public comms::Holdings {
  private:
   struct Tree {
     uint64_t digest = 0;
-    uint64_t revision = 0;  // of the queue, where it matters
     comms::DigestTree tree;
     std::map<uint64_t, std::pair<mapping::PieceKey, int32_t>> pieces;  // by key
   };
+  struct Said {
+    uint64_t digest = 0;
+    uint64_t revision = 0;  // of the queue
+    comms::DigestTree tree;
+  };
   const Tree& made(int32_t share);
+  const comms::DigestTree& madeOfSaid(int32_t share);  // of this node's own
   const wire::Heartbeat* lately(const std::string& node) const;
   bool isHeldByFusingNode(world::RobotId robot, uint32_t digest) const;
 
@@ -75,6 +80,7 @@ class StateHoldings final : public comms::Holdings {
   std::map<std::string, int64_t> heard_us_;  // nodes, by our clock
   std::map<world::RobotId, int64_t> unmet_since_us_;
   std::map<int32_t, Tree> trees_;
+  Said said_;
 };
 
 struct RepairOptions {
