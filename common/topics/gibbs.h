@@ -28,12 +28,11 @@ namespace shoal::topics {
 /// have run out nothing new opens.
 ///
 /// The order of draws: up to kLanes cells are entered at once, none of which may adjoin another, and their
-/// words are drawn in rounds, one of each cell side by side, each from the counts before the round, n_kw
-/// without any of the round's words. After it n_kw and n_ck are exact again. n_k in the denominator is worked
-/// out anew before the words drawn since are more than a 16th of any n_k + Vβ, or, if that is more, a 256th
-/// of all words; no round has more words than that either. Where this allows but one word, and where a topic
-/// might close or the ids run out, words are drawn one by one with everything exact. A topic that empties
-/// meanwhile and gets words again has never been gone.
+/// words are drawn in rounds, one of each cell side by side, each from n_kw and n_ck as they were before the
+/// round. n_k in the denominator is worked out anew before the words drawn since are more than a 16th of any
+/// n_k + Vβ, or, if that is more, a 256th of all words; no round has more words than that either. Where this
+/// allows but one word, and where a topic might close or the ids run out, words are drawn one by one with
+/// everything exact. A topic that empties meanwhile and gets words again has never been gone.
 ///
 /// Whether a topic opens is drawn apart, with 48 random bits: its probability may be 1e-12. Which of the open
 /// ones it is, is drawn with 23 bits. All in float, in one fixed order of summation. No library functions:

@@ -34,6 +34,7 @@ constexpr int32_t kWidth = static_cast<int32_t>(hn::MaxLanes(Floats()));
 // What a round reads and writes beside the lanes, [lane].
 struct Round {
   alignas(64) int32_t drawn[kLanes];    // slot of the token's new topic
+  alignas(64) int32_t own[kLanes];      // slot of its topic so far; -1: it has none
   alignas(64) int32_t running[kLanes];  // -1: the lane has a token to draw, 0: it has none, or opens a topic
   int32_t* row[kLanes];                 // n_kw of the token's word, or of any
   int32_t order[kLanes];                // lanes that run
@@ -57,6 +58,23 @@ HWY_INLINE VI more(VI a, hn::Mask<Ints> mask) {
   return hn::IfThenElse(mask, hn::Add(a, hn::Set(kI, 1)), a);
 #else
   return hn::Sub(a, hn::VecFromMask(kI, mask));
+#endif
+}
+
+// a - 1 where the mask is set.
+HWY_INLINE VI less(VI a, hn::Mask<Ints> mask) {
+#if HWY_TARGET == HWY_AVX3
+  return hn::IfThenElse(mask, hn::Sub(a, hn::Set(kI, 1)), a);
+#else
+  return hn::Add(a, hn::VecFromMask(kI, mask));
+#endif
+}
+HWY_INLINE VF less(VF a, hn::Mask<Ints> mask) {
+  const auto same = hn::RebindMask(kF, mask);
+#if HWY_TARGET == HWY_AVX3
+  return hn::IfThenElse(same, hn::Sub(a, hn::Set(kF, 1.0F)), a);
+#else
+  return hn::Sub(a, hn::IfThenElseZero(same, hn::Set(kF, 1.0F)));
 #endif
 }
 
@@ -110,6 +128,7 @@ HWY_INLINE bool drawPart(const Table& table, const float* HWY_RESTRICT inverse, 
   const float* HWY_RESTRICT const prior = lanes.prior.data() + first;
   float* HWY_RESTRICT const sums = lanes.sums.data() + first;
   const int32_t num_slots = table.num_slots;
+  VI own = hn::Load(kI, round.own + first);
   VF total = hn::Zero(kF);
   for (int32_t k = 0; k < num_slots; k += kSlotsTogether) {
     VI of_word[kSlotsTogether];
@@ -117,13 +136,16 @@ HWY_INLINE bool drawPart(const Table& table, const float* HWY_RESTRICT inverse, 
     VF within = hn::Zero(kF);
     for (int32_t i = 0; i < kSlotsTogether; ++i) {
       const int32_t at = (k + i) * kLanes;
-      const VF word_weight =
-          hn::Mul(hn::Add(hn::ConvertTo(kF, of_word[i]), beta), hn::Set(kF, inverse[k + i]));
-      const VF weight = hn::Mul(word_weight, hn::Add(hn::Load(kF, counts + at), hn::Load(kF, prior + at)));
+      const auto is_own = hn::Eq(own, hn::Set(kI, i));
+      const VF others = hn::ConvertTo(kF, less(of_word[i], is_own));
+      const VF word_weight = hn::Mul(hn::Add(others, beta), hn::Set(kF, inverse[k + i]));
+      const VF in_cell = less(hn::Load(kF, counts + at), is_own);
+      const VF weight = hn::Mul(word_weight, hn::Add(in_cell, hn::Load(kF, prior + at)));
       within = i == 0 ? weight : hn::Add(within, weight);
       hn::Store(hn::Add(total, within), kF, sums + at);
     }
     total = hn::Add(total, within);
+    own = hn::Sub(own, hn::Set(kI, kSlotsTogether));
   }
 
   VI running = hn::Load(kI, round.running + first);
@@ -174,46 +196,44 @@ HWY_INLINE int32_t* fetchedRow(const Table& table, const Token& token) {
   return row;
 }
 
-// Moves a word into the counts of a slot (by 1), or out of them (by -1). Slot -1 has none.
-HWY_INLINE void move(Lanes& lanes, const Round& round, uint32_t lane, int32_t slot, int32_t by) {
-  if (slot < 0) return;
-  round.row[lane][slot] += by;
-  countOf(lanes, slot, lane) += static_cast<float>(by);
-}
-
-// Takes the next tokens out of the counts. @returns how many of the lanes named have one: they run.
-int32_t takeOut(const Table& table, Lanes& lanes, const int32_t* named, int32_t num_named, Round& round) {
+// The next tokens. @returns how many of the lanes named have one: they run.
+int32_t fetchTokens(const Table& table, const Lanes& lanes, const int32_t* named, int32_t num_named,
+                    Round& round) {
   int32_t num_running = 0;
   for (int32_t i = 0; i < num_named; ++i) {
     const auto j = static_cast<uint32_t>(named[i]);
     const bool runs = lanes.next[j] != lanes.end[j];
     round.running[j] = runs ? -1 : 0;
+    round.own[j] = -1;
     if (!runs) continue;
     round.order[num_running++] = named[i];
     round.row[j] = fetchedRow(table, *lanes.next[j]);
-    move(lanes, round, j, lanes.next[j]->slot, -1);
+    round.own[j] = lanes.next[j]->slot;
   }
   return num_running;
 }
 
-void putBack(Lanes& lanes, const Round& round, int32_t from, int32_t to) {
-  for (int32_t i = from; i < to; ++i) {
-    const auto j = static_cast<uint32_t>(round.order[i]);
-    move(lanes, round, j, lanes.next[j]->slot, 1);
-  }
+// Moves a lane's word from its topic to the one drawn; most stay.
+HWY_INLINE void giveTopic(Lanes& lanes, const Round& round, uint32_t lane, Token& token) {
+  const int32_t drawn = round.drawn[lane], own = round.own[lane];
+  if (drawn == own) return;
+  token.slot = drawn;
+  ++round.row[lane][drawn];
+  countOf(lanes, drawn, lane) += 1.0F;
+  if (own < 0) return;
+  --round.row[lane][own];
+  countOf(lanes, own, lane) -= 1.0F;
 }
 
 // Gives the round's first tokens, so many, the topics drawn.
 void giveTopics(Lanes& lanes, const Round& round, int32_t num_tokens) {
   for (int32_t i = 0; i < num_tokens; ++i) {
     const auto j = static_cast<uint32_t>(round.order[i]);
-    const int32_t drawn = round.drawn[j];
-    (lanes.next[j]++)->slot = drawn;
-    move(lanes, round, j, drawn, 1);
+    giveTopic(lanes, round, j, *lanes.next[j]++);
   }
 }
 
-// giveTopics() and takeOut() where every lane has three tokens at least; fetches the rows of the third.
+// giveTopics() and fetchTokens() where every lane has three tokens at least; fetches the rows of the third.
 HWY_INLINE void goOn(const Table& table, Lanes& lanes, Round& round, int32_t num_running) {
   const int64_t stride = table.stride;
   int32_t* const HWY_RESTRICT word_counts = table.word_counts;
@@ -221,17 +241,9 @@ HWY_INLINE void goOn(const Table& table, Lanes& lanes, Round& round, int32_t num
   for (int32_t i = 0; i < num_running; ++i) {
     const auto j = static_cast<uint32_t>(round.order[i]);
     Token* const token = lanes.next[j];
-    const int32_t drawn = round.drawn[j];
-    token[0].slot = drawn;
-    ++round.row[j][drawn];
-    countOf(lanes, drawn, j) += 1.0F;
-    int32_t* const row = word_counts + token[1].word * stride;
-    const int32_t own = token[1].slot;
-    if (own >= 0) {
-      --row[own];
-      countOf(lanes, own, j) -= 1.0F;
-    }
-    round.row[j] = row;
+    giveTopic(lanes, round, j, token[0]);
+    round.row[j] = word_counts + token[1].word * stride;
+    round.own[j] = token[1].slot;
     lanes.next[j] = token + 1;
     const int32_t* const later = word_counts + token[2].word * stride;
     hwy::Prefetch(later);
@@ -255,9 +267,10 @@ Drawn drawRoundsOf(const Table& table, const float* inverse, Lanes& lanes, const
   Round round;
   std::fill_n(round.row, kLanes, table.word_counts);
   std::fill_n(round.running, kLanes, 0);
+  std::fill_n(round.own, kLanes, -1);
   const int32_t enough = std::max(num_running - max_finished, 0);
   Drawn result;
-  num_running = takeOut(table, lanes, running, num_running, round);
+  num_running = fetchTokens(table, lanes, running, num_running, round);
   int32_t alike = roundsAlike(lanes, round, num_running);
   for (int32_t r = 0; r < max_rounds && num_running > enough; ++r) {
     bool opens = false;
@@ -268,7 +281,6 @@ Drawn drawRoundsOf(const Table& table, const float* inverse, Lanes& lanes, const
       int32_t num_before = 0;
       while (round.running[round.order[num_before]] != 0) ++num_before;
       giveTopics(lanes, round, num_before);
-      putBack(lanes, round, num_before, num_running);
       result.num_drawn += num_before;
       result.opening = round.order[num_before];
       return result;
@@ -278,11 +290,10 @@ Drawn drawRoundsOf(const Table& table, const float* inverse, Lanes& lanes, const
       goOn(table, lanes, round, num_running);
     } else {
       giveTopics(lanes, round, num_running);
-      num_running = takeOut(table, lanes, round.order, num_running, round);
+      num_running = fetchTokens(table, lanes, round.order, num_running, round);
       alike = roundsAlike(lanes, round, num_running);
     }
   }
-  putBack(lanes, round, 0, num_running);
   return result;
 }
 

@@ -62,14 +62,14 @@ struct Drawn {
 };
 
 /// Draws topics for the next tokens of some lanes and moves the counts. In a round one token of each lane is
-/// drawn, all from the counts as they were before the round without the round's words (slot -1: it has no
+/// drawn, all from the counts as they were before the round, each without its own word (slot -1: it has no
 /// topic yet):
 ///
 ///     (n_kw + β) · inverse_k · (n_ck + prior_k)
 ///
 /// Float; summed over slots in one order, lane by lane, so that any instruction set gives the same bytes. A
 /// topic opens with probability opening_mass of the total: this token is left as it is, those of the lanes
-/// after it are not drawn in this round, and the call ends. Afterwards all words are in the counts.
+/// after it are not drawn in this round, and the call ends.
 ///
 /// @param running       Lanes with tokens left, none twice: the order in which their words are moved.
 /// @param max_rounds    Ends after so many rounds,
