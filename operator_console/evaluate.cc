@@ -36,7 +36,9 @@ struct EvaluateFlags {
 
 // "reef:varied", or of a folder its last part: worlds are moved.
 std::string nameOf(const std::string& world) {
-  const auto path = std::filesystem::path(world).lexically_normal();
+  std::error_code not_here;  // "reef:varied", or a folder of another machine
+  const auto folder = std::filesystem::canonical(world, not_here);
+  const auto path = not_here ? std::filesystem::path(world).lexically_normal() : folder;
   return (path.has_filename() ? path : path.parent_path()).filename();
 }
 

@@ -26,8 +26,8 @@ CONSOLE = os.path.join(BIN, "operator_console")
 SIZE = ["--robots", "3", "--observations", "6", "--seed", "7"]
 
 
-def run(*arguments, expect=0, timeout=240):
-    done = subprocess.run(arguments, capture_output=True, text=True, timeout=timeout)
+def run(*arguments, expect=0, timeout=240, cwd=None):
+    done = subprocess.run(arguments, capture_output=True, text=True, timeout=timeout, cwd=cwd)
     if done.returncode != expect:
         raise AssertionError(f"{' '.join(arguments)}: exit {done.returncode}, not {expect}\n{done.stdout}\n{done.stderr}")
     return done
@@ -457,12 +457,16 @@ class Mission(unittest.TestCase):
     @unittest.skipUnless("SHOAL_DATA" in os.environ, "the labelled worlds are elsewhere")
     def test_a_real_world_flies_too(self):
         out = os.path.join(self.top, "dubai")
-        launch(out, "--single", world=os.path.join(os.environ["SHOAL_DATA"], "dubai_tile5"))
+        world = os.path.join(os.environ["SHOAL_DATA"], "dubai_tile5")
+        launch(out, "--single", world=world)
         with open(os.path.join(out, "summary.json"), encoding="utf-8") as file:
             summary = json.load(file)
         check_schema("summary", summary)
         self.assertEqual(summary["cell_size_m"], 24)
         self.assertGreater(summary["scores"]["scored"], 1000)
+        again = [os.path.abspath(CONSOLE), "evaluate", "--run", out, "--matcher", "id", "--world"]
+        self.assertEqual(run(*again, ".", cwd=world).stderr, "")  # the same folder by another name
+        self.assertIn("was flown over " + world, run(*again, os.path.join(os.environ["SHOAL_DATA"], "dubai_tile4")).stderr)
 
 
 @unittest.skipUnless("SHOAL_DATA" in os.environ, "the recordings are elsewhere")
