@@ -15,9 +15,9 @@ constexpr size_t kMaxTold = 1000;
 constexpr double kLostAfterS = 10;
 constexpr double kHeartbeatBytes = 250;
 
-// A heartbeat takes at most a fifth of the budget.
+// While content waits, heartbeats take at most a tenth of the budget.
 double patience(const wire::Heartbeat& h) {
-  return h.budget > 0 ? std::max(kLostAfterS, 4 * 5 * kHeartbeatBytes / h.budget) : kLostAfterS;
+  return h.budget > 0 ? std::max(kLostAfterS, 4 * 10 * kHeartbeatBytes / h.budget) : kLostAfterS;
 }
 
 bool isPowerOfTen(uint64_t n) {

@@ -9,13 +9,13 @@ namespace shoal::robot_agent {
 namespace {
 
 // As long as a crashed robot takes to come back, and a multiple of what a thin budget leaves between two
-// heartbeats, which take at most a fifth of it.
+// heartbeats, which take at most a tenth of it while content waits.
 constexpr double kPatienceS = 60;
 constexpr double kPatienceToMeetS = 15;
 constexpr double kHeartbeatBytes = 250;
 
 double patience(const wire::Heartbeat& h) {
-  return h.budget > 0 ? std::max(kPatienceS, 10 * 5 * kHeartbeatBytes / h.budget) : kPatienceS;
+  return h.budget > 0 ? std::max(kPatienceS, 10 * 10 * kHeartbeatBytes / h.budget) : kPatienceS;
 }
 
 }  // namespace

@@ -33,7 +33,8 @@ int64_t Sender::pump(int64_t now_us) {
   while (true) {
     const Made* next = make(now_us);
     const bool content_first = heartbeat_went_last_ && next != nullptr;
-    if (heartbeat_.dueAt() <= now_us && !content_first) {
+    const int64_t heartbeat_due_us = heartbeat_.dueAt(next != nullptr);
+    if (heartbeat_due_us <= now_us && !content_first) {
       Packet packet = options_.make_heartbeat(now_us);
       packet.trailer = link_.trailerBytes();
       if (const int64_t at_us = earliest(now_us, packet); at_us > now_us) return at_us;
@@ -42,9 +43,9 @@ int64_t Sender::pump(int64_t now_us) {
       heartbeat_went_last_ = true;
       continue;
     }
-    if (next == nullptr) return std::min(heartbeat_.dueAt(), queue_.nextResend().value_or(kNever));
+    if (next == nullptr) return std::min(heartbeat_due_us, queue_.nextResend().value_or(kNever));
     if (const int64_t at_us = earliest(now_us, next->packet); at_us > now_us) {
-      return content_first ? at_us : std::min(at_us, heartbeat_.dueAt());
+      return content_first ? at_us : std::min(at_us, heartbeat_due_us);
     }
     Packet packet = next->packet;
     if (options_.stamp) options_.stamp(packet, now_us);

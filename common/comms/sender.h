@@ -71,9 +71,6 @@ class Sender {
   /// Makes the next heartbeat due now: it goes as soon as the budget lets it.
   void hurryHeartbeat(int64_t now_us) { heartbeat_.hurry(now_us); }
 
-  /// When the next heartbeat may go.
-  int64_t heartbeatDue() const { return heartbeat_.dueAt(); }
-
   /// Sends at once on the local bus: class local, paced in wall time, outside the budget.
   void sendLocal(const Packet& packet);
 

@@ -9,7 +9,7 @@ export const LAYERS: Layer[] = ["label", "certainty", "surprise", "age", "robot"
 export interface Cell { x: number; y: number; z: number; label: number; seen: number; robot: number; certainty: number; surprise: number; truth: number | null }
 
 const CHUNK = 8; // tiles along the edge of a picture
-const SILENT_S = 5, HEARTBEAT_BYTES = 250, HEARTBEAT_SHARE = 0.2; // a heartbeat takes at most a fifth of the budget
+const SILENT_S = 5, HEARTBEAT_BYTES = 250, HEARTBEAT_SHARE = 0.1; // of the budget, at most, while content waits
 
 // Another way to show the same cells, under this canvas.
 export interface DepthView {
