@@ -90,7 +90,7 @@ MissionState::MissionState(int32_t mission, const matching::MatcherOptions& matc
 }
 
 bool MissionState::hear(const comms::Packet& packet, comms::Stats& stats) {
-  const bool news = takeIn(packet, stats);
+  const bool news = takeIn(packet, stats, true);
   if (const auto channel = comms::parseChannel(packet.channel);
       channel && channel->kind != "MAP")  // not of the link
     links_.heard(channel->node, comms::wireSize(packet));
@@ -98,7 +98,13 @@ bool MissionState::hear(const comms::Packet& packet, comms::Stats& stats) {
   return news;
 }
 
-bool MissionState::takeIn(const comms::Packet& packet, comms::Stats& stats) {
+bool MissionState::recall(const comms::Packet& packet, comms::Stats& stats) {
+  const bool news = takeIn(packet, stats, false);
+  events_.refused(packet.channel, stats);
+  return news;
+}
+
+bool MissionState::takeIn(const comms::Packet& packet, comms::Stats& stats, bool is_live) {
   const auto refuse = [&stats](std::string_view reason) {
     stats.countRejected(reason);
     return false;
@@ -133,7 +139,7 @@ bool MissionState::takeIn(const comms::Packet& packet, comms::Stats& stats) {
         beliefs_.noteEpoch(*robot, heartbeat->epoch);
       }
       twins_.heard(channel->node, *heartbeat);
-      links_.claimed(channel->node, *heartbeat);
+      if (is_live) links_.claimed(channel->node, *heartbeat);
       wire::Heartbeat& held = heartbeats_[channel->node];
       const auto age = [](const wire::Heartbeat& h) { return std::pair(h.epoch, h.time); };
       if (age(*heartbeat) >= age(held)) held = *heartbeat;

@@ -45,6 +45,9 @@ class MissionState {
   /// Takes a message in. Refusals are counted in `stats`.
   /// @returns true when it holds state that was not held before.
   bool hear(const comms::Packet& packet, comms::Stats& stats);
+  /// The same with a message of a memory. It does not count for links: a memory leaves out what was heard
+  /// and held nothing new.
+  bool recall(const comms::Packet& packet, comms::Stats& stats);
 
   /// Wall time, seconds, growing: who is silent for long is lost.
   void passTime(double wall_s) { events_.passTime(wall_s); }
@@ -112,7 +115,7 @@ class MissionState {
   const matching::MatcherOptions& matcher() const { return matcher_; }
 
  private:
-  bool takeIn(const comms::Packet& packet, comms::Stats& stats);
+  bool takeIn(const comms::Packet& packet, comms::Stats& stats, bool is_live);
   bool take(const mapping::Piece& piece, bool repaired, comms::Stats& stats);
 
   EventLog events_;

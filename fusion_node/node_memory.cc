@@ -46,7 +46,7 @@ std::optional<NodeMemory::Clock> NodeMemory::recall(MissionState& state) {
   MissionFileReader file(path_);
   while (const auto event = file.next()) {
     const auto header = wire::peek(event->packet.bytes);
-    if (header && header->mission == mission_) state.hear(event->packet, passed_over);
+    if (header && header->mission == mission_) state.recall(event->packet, passed_over);
   }
   const std::vector<mapping::MissionEvent> events = file_.events();
   if (!events.empty()) last_event_ = events.back();

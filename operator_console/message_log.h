@@ -38,6 +38,9 @@ class MessageLog {
 
   std::optional<comms::LogEvent> next();
 
+  /// True for what a node remembers: not all that it heard.
+  bool isMemory() const { return file_.has_value(); }
+
   const comms::LogCounts& counts() const;
   const SealCounts& seals() const { return seals_; }
 

@@ -36,7 +36,11 @@ RecordedMission readRecording(const std::string& path, const matching::MatcherOp
     const auto header = wire::peek(event->packet.bytes);
     if (until && header && header->time > *until) continue;
     recorded.state.passTime(static_cast<double>(event->time_us) * 1e-6);
-    recorded.state.hear(event->packet, refused);
+    if (log.isMemory()) {
+      recorded.state.recall(event->packet, refused);
+    } else {
+      recorded.state.hear(event->packet, refused);
+    }
     if (const int64_t now_refused = total(refused); now_refused != recorded.refused) {
       recorded.refused = now_refused;
       continue;

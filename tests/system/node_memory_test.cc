@@ -157,6 +157,38 @@ TEST_F(NodeMemoryTest, ARobotThatHasLandedHasLandedStill) {
   EXPECT_EQ(after.heartbeats().at("R01").observation, 3);
 }
 
+// Nothing is lost. The memory leaves out topics that were known and heartbeats between two of ten seconds.
+TEST_F(NodeMemoryTest, LinksBeginAnewWithWhatIsHeardLive) {
+  int64_t sent = 0, second = 0;
+  const auto hearsASecond = [&](NodeMemory& memory, MissionState& state) {
+    wire::Heartbeat h;
+    h.mission = kMission;
+    h.time = {++second * 1'000'000};
+    h.bytes_sent = sent;
+    for (const comms::Packet& packet : {comms::Packet{"SHOAL_R01_HEARTBEAT", wire::encode(h)}, topic(1)}) {
+      hear(memory, state, packet);
+      sent += static_cast<int64_t>(comms::wireSize(packet));
+    }
+    memory.commit(state);
+  };
+  {
+    MissionState before(kMission, {});
+    NodeMemory memory(dir_, "OPERATOR", kMission);
+    for (int i = 0; i < 60; ++i) hearsASecond(memory, before);
+    EXPECT_EQ(before.overview().nodes.at(0).heard_share, 1.0);
+    EXPECT_EQ(before.missedOf("R01"), 0);
+  }
+  MissionState after(kMission, {});
+  NodeMemory memory(dir_, "OPERATOR", kMission);
+  memory.recall(after);
+  EXPECT_FALSE(after.overview().nodes.at(0).heard_share);
+  EXPECT_FALSE(after.missedOf("R01"));
+  const int64_t unheard = sent;  // by this process
+  for (int i = 0; i < 3; ++i) hearsASecond(memory, after);
+  EXPECT_EQ(after.overview().nodes.at(0).heard_share, 1.0);
+  EXPECT_EQ(after.missedOf("R01"), unheard);
+}
+
 TEST_F(NodeMemoryTest, EventsAreKeptOnceHoweverOftenItIsStartedAgain) {
   for (int life = 0; life < 3; ++life) {
     MissionState state(kMission, {});

@@ -12,8 +12,10 @@
 
 #include <gtest/gtest.h>
 
+#include "fusion_node/mission_file.h"
 #include "operator_console/agreement.h"
 #include "operator_console/piece_audit.h"
+#include "operator_console/recorded_mission.h"
 #include "operator_console/replay.h"
 #include "operator_console/traffic_audit.h"
 #include "operator_console/verify.h"
@@ -218,6 +220,22 @@ TEST(ReplayTest, RebuildsTheTablesFromTheRecordingAlone) {
   EXPECT_EQ(mapping::readFile(out + "/global_map.png").substr(1, 3), "PNG");
   std::ofstream(out + "/summary.json") << "{}";
   EXPECT_THROW(replay(mission.write(), out, {}), std::invalid_argument);
+}
+
+// The same messages in a log, which holds all that was heard, and as what a node remembers, which does not.
+TEST(RecordedMissionTest, AMemorySaysNothingOfLinks) {
+  Mission mission;
+  mission.sayAll();
+  for (const double at_s : {13, 14}) mission.beat("R00", mission.robot, at_s);
+  const std::string log = mission.write(), memory = log + ".sqlite";
+  {
+    fusion_node::MissionFile file(memory, "OPERATOR", kMission);
+    for (const comms::Packet& packet : mission.packets) file.append(packet, 0);
+    file.commit();
+  }
+  EXPECT_EQ(readRecording(log, {}).state.overview().nodes.at(0).heard_share, 1.0);
+  EXPECT_FALSE(readRecording(memory, {}).state.overview().nodes.at(0).heard_share);
+  std::filesystem::remove(memory);
 }
 
 TEST(ReplayTest, NamesWhatTheRecordingLacks) {
