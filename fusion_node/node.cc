@@ -428,6 +428,7 @@ void Node::finish() {
   for (int turns = 0; turns < 50; ++turns) {  // what already waits in the socket
     if (link_.receive(0, [this](const comms::Packet& packet) { hear(packet); }) == 0) break;
   }
+  onDisk([&] { memory_->keepLast(); });
   commit();
   state_.refreshMap();
   for (const comms::Packet& packet : mapPackets()) sender_.sendLocal(packet);  // whole, whatever was begun

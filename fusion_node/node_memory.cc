@@ -76,15 +76,32 @@ void NodeMemory::keep(const comms::Packet& packet, bool is_new) {
     const auto heartbeat = wire::decodeHeartbeat(packet.bytes);
     if (!heartbeat || heartbeat->mission != mission_) return;
     if (!heartbeat_kept_.contains(packet.channel) && heartbeat_kept_.size() >= kMaxNodes) return;
-    const Kept now{heartbeat->time.us, heartbeat->phase};
+    const Kept now{heartbeat->time.us, heartbeat->phase, {heartbeat->host, heartbeat->pid}};
     const auto [kept, first] = heartbeat_kept_.try_emplace(packet.channel, now);
-    if (!first && std::abs(now.time_us - kept->second.time_us) < kHeartbeatEveryUs &&
-        now.phase == kept->second.phase)
+    Kept& last = kept->second;
+    if (!first && std::abs(now.time_us - last.time_us) < kHeartbeatEveryUs && now.phase == last.phase &&
+        now.process == last.process) {
+      if (last.left_out && now.time_us < last.left_out_us) return;  // late
+      last.left_out = packet;
+      last.left_out_us = now.time_us;
       return;
-    kept->second = now;
+    }
+    if (now.process != last.process && last.left_out) append(*last.left_out);  // what it had sent in all
+    last = now;
   } else if (!is_new) {
     return;
   }
+  append(packet);
+}
+
+void NodeMemory::keepLast() {
+  for (auto& [channel, kept] : heartbeat_kept_) {
+    if (kept.left_out) append(*kept.left_out);
+    kept.left_out.reset();
+  }
+}
+
+void NodeMemory::append(const comms::Packet& packet) {
   file_.append(packet, thisMoment().wall_us);
   has_kept_ = true;
 }

@@ -18,10 +18,10 @@ namespace shoal::fusion_node {
 std::string missionFilePath(const std::string& state_dir, int32_t mission);
 
 /// What a node has heard, kept in its state folder as a MissionFile: every message with a piece that was new,
-/// heartbeats now and then and when a robot lands or leaves, and what happened. What was heard at once is one
-/// transaction, which is over before the node's heartbeat can say that it is held, so a node that is killed
-/// at any moment comes back with all that it has acknowledged. Nothing is thrown away: the file is the
-/// mission's history, a few bytes more than what was heard for the first time.
+/// heartbeats now and then, when a robot lands or leaves and the last of a process, and what happened. What
+/// was heard at once is one transaction, which is over before the node's heartbeat can say that it is held,
+/// so a node that is killed at any moment comes back with all that it has acknowledged. Nothing is thrown
+/// away: the file is the mission's history, a few bytes more than what was heard for the first time.
 class NodeMemory {
  public:
   /// @param node  The node whose memory it is.
@@ -48,6 +48,10 @@ class NodeMemory {
   /// @throws std::runtime_error naming the file that cannot be written.
   void keep(const comms::Packet& packet, bool is_new);
 
+  /// The node ends: the last heartbeat of everybody is kept, however soon it came after another.
+  /// @throws std::runtime_error naming the file that cannot be written.
+  void keepLast();
+
   /// What was kept is safe; events that are new to it too. To be called after what was heard at once, and
   /// before any of it is acknowledged.
   /// @throws std::runtime_error naming the file that cannot be written.
@@ -57,7 +61,12 @@ class NodeMemory {
   struct Kept {
     int64_t time_us;  // of the mission
     wire::Phase phase;
+    std::pair<int32_t, int32_t> process;         // host, pid
+    std::optional<comms::Packet> left_out = {};  // the newest since
+    int64_t left_out_us = 0;                     // when it was said
   };
+
+  void append(const comms::Packet& packet);
 
   std::string path_;
   int32_t mission_;

@@ -157,6 +157,33 @@ TEST_F(NodeMemoryTest, ARobotThatHasLandedHasLandedStill) {
   EXPECT_EQ(after.heartbeats().at("R01").observation, 3);
 }
 
+comms::Packet beatOf(const std::string& node, int64_t second, int32_t pid, int64_t bytes_sent) {
+  wire::Heartbeat h;
+  h.mission = kMission;
+  h.time = {second * 1'000'000};
+  h.pid = pid;
+  h.bytes_sent = bytes_sent;
+  h.class_bytes[0] = bytes_sent;
+  return {"SHOAL_" + node + "_HEARTBEAT", wire::encode(h)};
+}
+
+TEST_F(NodeMemoryTest, TheLastHeartbeatOfEverybodyIsKeptWhenTheNodeEnds) {
+  {
+    MissionState before(kMission, {});
+    NodeMemory memory(dir_, "OPERATOR", kMission);
+    for (const int64_t second : {1, 2, 3}) hear(memory, before, beatOf("R01", second, 7, 100 * second));
+    hear(memory, before, beatOf("R02", 3, 7, 100));
+    memory.keepLast();
+    memory.commit(before);
+  }
+  MissionState after(kMission, {});
+  NodeMemory(dir_, "OPERATOR", kMission).recall(after);
+  EXPECT_EQ(after.heartbeats().at("R01").time.seconds(), 3);
+  size_t kept = 0;
+  for (MissionFileReader file(missionFilePath(dir_, kMission)); file.next();) ++kept;
+  EXPECT_EQ(kept, 3u);
+}
+
 // Nothing is lost. The memory leaves out topics that were known and heartbeats between two of ten seconds.
 TEST_F(NodeMemoryTest, LinksBeginAnewWithWhatIsHeardLive) {
   int64_t sent = 0, second = 0;

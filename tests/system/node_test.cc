@@ -122,5 +122,26 @@ TEST_F(NodeTest, KeepsItsBudgetHoweverOftenItIsKilled) {
   }
 }
 
+TEST_F(NodeTest, RemembersTheLastHeartbeatThatItHeard) {
+  NodeOptions remembering = options();
+  remembering.state_dir = testing::TempDir() + "shoal_last" + std::to_string(::getpid());
+  std::filesystem::remove_all(remembering.state_dir);
+  {
+    Node node(remembering, *ears_, *local_);
+    for (const int64_t second : {1, 2, 3}) {
+      wire::Heartbeat beat;
+      beat.mission = kMission;
+      beat.time = {second * 1'000'000};
+      air_->publish({"SHOAL_R01_HEARTBEAT", wire::encode(beat)});
+      node.turn(1);
+    }
+    node.finish();
+  }
+  MissionState remembered(kMission, {});
+  NodeMemory(remembering.state_dir, "OPERATOR", kMission).recall(remembered);
+  EXPECT_EQ(remembered.heartbeats().at("R01").time.seconds(), 3);
+  std::filesystem::remove_all(remembering.state_dir);
+}
+
 }  // namespace
 }  // namespace shoal::fusion_node
