@@ -143,6 +143,11 @@ bool MissionState::takeIn(const comms::Packet& packet, comms::Stats& stats, bool
       wire::Heartbeat& held = heartbeats_[channel->node];
       const auto age = [](const wire::Heartbeat& h) { return std::pair(h.epoch, h.time); };
       if (age(*heartbeat) >= age(held)) held = *heartbeat;
+      SentBytes& sent = sent_[channel->node];
+      sent.heard(*heartbeat);
+      const SentBytes::Sum sum = sent.sum();
+      held.bytes_sent = sum.bytes;
+      held.class_bytes = sum.of_class;
       latest_ = std::max(latest_, heartbeat->time);
       return false;
     }

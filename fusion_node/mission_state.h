@@ -11,6 +11,7 @@
 #include "fusion_node/clock_watch.h"
 #include "fusion_node/event_log.h"
 #include "fusion_node/link_watch.h"
+#include "fusion_node/sent_bytes.h"
 #include "fusion_node/twin_watch.h"
 #include "shoal/comms/packet.h"
 #include "shoal/comms/stats.h"
@@ -66,6 +67,7 @@ class MissionState {
   }
 
   const mapping::BeliefStore& beliefs() const { return beliefs_; }
+  /// The last of every node; its bytes sent are those of all its lives that were heard.
   const std::map<std::string, wire::Heartbeat>& heartbeats() const { return heartbeats_; }
   /// Ids of other missions that were heard.
   const std::set<int32_t>& otherMissions() const { return other_missions_; }
@@ -124,6 +126,7 @@ class MissionState {
   double cell_size_m_;
   mapping::BeliefStore beliefs_;
   std::map<std::string, wire::Heartbeat> heartbeats_;
+  std::map<std::string, SentBytes> sent_;  // by the same names
   std::set<int32_t> other_missions_;
   std::map<std::string, uint64_t> sealed_nodes_;
   ClockWatch clocks_;

@@ -158,11 +158,10 @@ void addStatusCommand(CLI::App& app, Action& chosen) {
       ->capture_default_str();
   command->footer(
       "silent: lost, as events tells it, and not heard since; of a finished mission and of a recording only\n"
-      "robots that had not landed. ago: mission time since a node was last heard. link: percent of the "
-      "bytes\n"
-      "a node sent in its last minute that arrived here. used: bytes sent of\n"
-      "what the budget allowed so far. queue: bytes that wait. clear: seconds until they are said, if\n"
-      "nothing new comes. refused: messages not understood, or too many at once.\n"
+      "robots that had not landed. ago: mission time since a node was last heard. link: percent of the\n"
+      "bytes a node sent in its last minute that arrived here. used: bytes sent, in all its lives that\n"
+      "were heard, of what the budget allowed so far. queue: bytes that wait. clear: seconds until they\n"
+      "are said, if nothing new comes. refused: messages not understood, or too many at once.\n"
       "told: whether all that a robot has to say was heard. map: the same as this one, made of another\n"
       "state (behind), or OTHER though made of the same state: an alarm, unless a recording was asked with\n"
       "another --matcher than the mission's. Below the table: clocks that are off, twins, other missions, "

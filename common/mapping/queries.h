@@ -24,7 +24,7 @@ struct NodeStatus {
   int32_t observation = -1;      ///< its latest image, -1 = none yet
   int32_t num_observations = 0;  ///< of its whole stream, 0 = unknown
   int32_t topics = 0, cells = 0;
-  int64_t bytes_sent = 0;   ///< on the link, headers counted
+  int64_t bytes_sent = 0;   ///< on the link, headers counted, in all its lives that were heard
   int32_t budget = 0;       ///< bytes per second of mission time, 0 = unlimited
   int32_t queue_bytes = 0;  ///< waiting to be sent
   /// Seconds of mission time in which its budget lets it say what waits; 0 without a budget.

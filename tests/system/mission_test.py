@@ -193,6 +193,14 @@ class Mission(unittest.TestCase):
         self.assertEqual(answer["wrong"], [])
         nodes = [node["node"] for node in answer["nodes"] if node["node"] != "LAUNCH"]
         self.assertEqual(nodes, ["OPERATOR", "R00", "R00", "R01", "R01", "R02", "R02"])
+        with open(os.path.join(out, "summary.json"), encoding="utf-8") as file:
+            summary = json.load(file)
+        for robot in ["R00", "R01", "R02"]:  # all that it said but for what followed the last heartbeat of each life
+            lives = [node["bytes"] for node in answer["nodes"] if node["node"] == robot]
+            told = sum(count for name, count in summary["bytes"][robot].items() if name != "local")
+            self.assertGreater(told, max(lives), robot)
+            self.assertLessEqual(told, sum(lives), robot)
+            self.assertEqual([node["bytes_sent"] for node in summary["nodes"] if node["name"] == robot], [told])
         self.assertTrue(ask("replay", log, "--out", os.path.join(self.top, "crashes_again"))["whole"])
 
     def test_processes_that_are_killed_without_a_plan_come_back(self):

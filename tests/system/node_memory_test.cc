@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <stdexcept>
+#include <tuple>
 
 #include <gtest/gtest.h>
 
@@ -165,6 +166,26 @@ comms::Packet beatOf(const std::string& node, int64_t second, int32_t pid, int64
   h.bytes_sent = bytes_sent;
   h.class_bytes[0] = bytes_sent;
   return {"SHOAL_" + node + "_HEARTBEAT", wire::encode(h)};
+}
+
+// By hand: the first life had sent 300 bytes when it was last heard, the second 50.
+TEST_F(NodeMemoryTest, WhatWasSentInLivesBeforeIsKnownStill) {
+  {
+    MissionState before(kMission, {});
+    NodeMemory memory(dir_, "OPERATOR", kMission);
+    for (const auto& [second, pid, bytes] : {std::tuple{1, 7, 100}, {3, 7, 300}, {2, 7, 200}, {4, 8, 50}})
+      hear(memory, before, beatOf("R01", second, pid, bytes));
+    memory.commit(before);
+    EXPECT_EQ(before.overview().nodes.at(0).bytes_sent, 350);
+    EXPECT_EQ(before.overview().nodes.at(0).class_bytes.at("heartbeat"), 350);
+    EXPECT_EQ(before.heartbeats().at("R01").bytes_sent, 350);
+  }
+  MissionState after(kMission, {});
+  NodeMemory memory(dir_, "OPERATOR", kMission);
+  memory.recall(after);
+  EXPECT_EQ(after.overview().nodes.at(0).bytes_sent, 350);
+  hear(memory, after, beatOf("R01", 5, 8, 60));
+  EXPECT_EQ(after.overview().nodes.at(0).bytes_sent, 360);
 }
 
 TEST_F(NodeMemoryTest, TheLastHeartbeatOfEverybodyIsKeptWhenTheNodeEnds) {
