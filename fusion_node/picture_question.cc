@@ -20,7 +20,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kHeartbeatShare = 0.2;  // of a budget, at most
-constexpr int kImagesBetweenNews = 5;    // a robot that flies says what is new every so many
 
 std::string topicName(const mapping::HeldPicture& p) {
   return name(p.robot) + " example " + std::to_string(number(p.topic));
@@ -86,6 +85,12 @@ double secondsOf(double bytes, int64_t budget) {
   return budget == 0 ? 0 : bytes / (static_cast<double>(budget) * (1 - kHeartbeatShare));
 }
 
+// Nobody knows how much a robot will yet say before it answers: pictures that are new by then stand before
+// the one that is asked for, and all that is new shares the budget by weight.
+bool hasMoreToTell(const wire::Heartbeat& robot) {
+  return robot.phase == wire::Phase::kFlying || robot.phase == wire::Phase::kListening;
+}
+
 }  // namespace
 
 SharperPicture sharperPicture(const MissionState& state, const Json& question) {
@@ -121,14 +126,13 @@ Json priceOf(const MissionState& state, const SharperPicture& wanted, const std:
   const auto said = state.heartbeats().find(name(p.robot));
   if (said != state.heartbeats().end()) {
     const wire::Heartbeat& robot = said->second;
-    double seconds = 0;
-    if (!is_sharp) {
-      seconds = secondsOf(static_cast<double>(request), budget) +
-                secondsOf(static_cast<double>(robot.queue_bytes) + static_cast<double>(reply), robot.budget);
-      if (robot.phase == wire::Phase::kFlying && robot.observation > 0)
-        seconds += kImagesBetweenNews * robot.time.seconds() / robot.observation;
+    if (is_sharp) {
+      answer["seconds"] = 0;
+    } else if (!hasMoreToTell(robot)) {
+      const double waits = static_cast<double>(robot.queue_bytes) + static_cast<double>(reply);
+      const double seconds = secondsOf(static_cast<double>(request), budget) + secondsOf(waits, robot.budget);
+      answer["seconds"] = std::ceil(seconds * 10) / 10;
     }
-    answer["seconds"] = std::ceil(seconds * 10) / 10;
     answer["heard_ago_s"] = std::max(0.0, state.latestTime().seconds() - robot.time.seconds());
   }
   answer["picture"] = mapping::toJson(p);

@@ -27,12 +27,13 @@ SharperPicture sharperPicture(const MissionState& state, const nlohmann::ordered
 
 /// What it will cost to have it sharper, at most: bytes on the wire of the request and of the answer, headers
 /// counted, and seconds of mission time until it is here when nothing is lost: the request under our budget,
-/// what the robot still has to say, and the answer, under its budget; while it flies, also the images until
-/// it says something new. Nothing when the picture is sharp already:
-/// it was asked for before, or it is simple enough to have come as fine as any.
+/// what the robot still has to say, and the answer, under its budget. Until it has landed, and looked again
+/// if it will, there is no such bound. Nothing when the picture is sharp already: it was asked for before, or
+/// it is simple enough to have come as fine as any.
 /// @param node    Who asks. @param budget  Its bytes per second, 0 = unlimited.
 /// @returns {"robot","topic","example","label","state","bytes":{"request","answer"},"seconds","heard_ago_s",
-///          "picture"}; state is "sharp" or "not sharp"; seconds is null when the robot was never heard.
+///          "picture"}; state is "sharp" or "not sharp"; seconds is null when there is no bound, or when the
+///          robot was never heard: heard_ago_s is null then too.
 nlohmann::ordered_json priceOf(const MissionState& state, const SharperPicture& wanted,
                                const std::string& node, int64_t budget);
 

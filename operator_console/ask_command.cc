@@ -91,11 +91,16 @@ void printPrice(const Json& a) {
   const int64_t request = a["bytes"]["request"], reply = a["bytes"]["answer"];
   fmt::print("{}: at most {:.1f} kB ({} B to ask, {} B to answer)", topicText(a),
              static_cast<double>(request + reply) / 1000, request, reply);
-  if (a["seconds"].is_null()) {
+  if (a["heard_ago_s"].is_null()) {
     fmt::print("; {} was never heard, so nobody knows when\n", a["robot"].get<std::string>());
     return;
   }
-  fmt::print(", {:.0f} s", std::ceil(a["seconds"].get<double>()));
+  if (a["seconds"].is_null()) {
+    fmt::print("; no bound on when: {} has more to see or to learn, which takes most of its budget",
+               a["robot"].get<std::string>());
+  } else {
+    fmt::print(", {:.0f} s", std::ceil(a["seconds"].get<double>()));
+  }
   if (const double ago_s = a["heard_ago_s"]; ago_s > 60) fmt::print("; last heard {:.0f} s ago", ago_s);
   fmt::print("\n");
 }
@@ -148,7 +153,9 @@ void addAskCommand(CLI::App& app, Action& chosen) {
   command->footer(
       "The price is an upper bound, and its seconds are mission time on a link that loses nothing: the "
       "request,\n"
-      "what the robot has still to say, the answer. All nodes get to hold what one has asked for.\n\n"
+      "what the robot has still to say, the answer. While a robot flies, or has yet to look again at its\n"
+      "map, they have no bound (null in JSON): what is new takes most of its budget. All nodes get to hold\n"
+      "what one has asked for.\n\n"
       "  operator_console ask R03 example 7 --node state --dry-run\n"
       "  operator_console ask 10004 --node state --wait 30 --out coral.png");
   command->callback([wish, &chosen] { chosen = [wish] { return ask(*wish); }; });

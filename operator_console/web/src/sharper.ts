@@ -9,7 +9,8 @@ const kilobytes = (bytes: number): string => `${(bytes / 1000).toFixed(1)} kB`;
 export function priceText(price: Price): string {
   if (price.state === "sharp") return "It is as sharp as it gets: there is nothing to pay.";
   const { request, answer } = price.bytes;
-  const when = price.seconds === null ? `; ${price.robot} was never heard, so nobody knows when` : `, about ${Math.ceil(price.seconds)} s`;
+  const when = price.heard_ago_s === null ? `; ${price.robot} was never heard, so nobody knows when`
+    : price.seconds === null ? `; no bound on when: ${price.robot} has more to see or to learn, which takes most of its budget` : `, at most ${Math.ceil(price.seconds)} s`;
   const ago = price.heard_ago_s !== null && price.heard_ago_s > 60 ? ` (${price.robot} was last heard ${seconds(price.heard_ago_s)} ago)` : "";
   return `A sharper one costs at most ${kilobytes(request + answer)} on the link (${request} B to ask, ${answer} B to answer)${when}${ago}.`;
 }
