@@ -2,6 +2,7 @@
 #include "shoal/mapping/atomic_file.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -35,6 +36,37 @@ void syncFolder(const std::filesystem::path& folder) {
   ::close(opened);
 }
 
+// Writes everything. @returns whether it could; if not, errno says why.
+bool write(int file, std::span<const std::string_view> contents) {
+  for (std::string_view rest : contents) {
+    while (!rest.empty()) {
+      const ssize_t n = ::write(file, rest.data(), rest.size());
+      if (n < 0 && errno == EINTR) continue;
+      if (n < 0) return false;
+      rest.remove_prefix(static_cast<size_t>(n));
+    }
+  }
+  return true;
+}
+
+// No name for a file of its own: /dev/null, a named pipe, /dev/stdout whatever that is.
+bool isPlaceToWriteInto(const std::string& path) {
+  for (const char* open_file : {"/dev/std", "/dev/fd/", "/proc/"})
+    if (path.starts_with(open_file)) return true;
+  struct stat status {};
+  return ::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode);
+}
+
+void writeInto(const std::string& path, std::span<const std::string_view> contents) {
+  const int file = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
+  if (file < 0) fail("cannot write into", path);
+  const bool is_written = write(file, contents);
+  const int reason = errno;
+  const bool is_closed = ::close(file) == 0;
+  if (!is_written) errno = reason;
+  if (!is_written || !is_closed) fail("cannot write into", path);
+}
+
 }  // namespace
 
 void makeFolder(const std::string& folder) {
@@ -48,24 +80,22 @@ void writeFileAtomically(const std::string& path, std::string_view content) {
   writeFileAtomically(path, std::span(&content, 1));
 }
 
-void writeFileAtomically(const std::string& path, std::span<const std::string_view> contents) {
+void writeFileAtomically(const std::string& named, std::span<const std::string_view> contents) {
+  if (isPlaceToWriteInto(named)) return writeInto(named, contents);
+  std::error_code leads_nowhere;
+  const bool is_link = std::filesystem::is_symlink(named, leads_nowhere);
+  const std::string linked = is_link ? std::filesystem::canonical(named, leads_nowhere).string() : named;
+  const std::string path = leads_nowhere ? named : linked;
   const auto folder = std::filesystem::path(path).parent_path();
   if (!folder.empty()) makeFolder(folder);
   const std::string temporary = path + ".tmp" + std::to_string(::getpid());
   const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   if (file < 0) fail("cannot write", temporary);
-  for (std::string_view rest : contents) {
-    while (!rest.empty()) {
-      const ssize_t n = ::write(file, rest.data(), rest.size());
-      if (n < 0 && errno == EINTR) continue;
-      if (n < 0) {
-        const int reason = errno;
-        ::close(file);
-        errno = reason;
-        failWithout(temporary, "cannot write", temporary);
-      }
-      rest.remove_prefix(static_cast<size_t>(n));
-    }
+  if (!write(file, contents)) {
+    const int reason = errno;
+    ::close(file);
+    errno = reason;
+    failWithout(temporary, "cannot write", temporary);
   }
   const bool is_synced = ::fsync(file) == 0;
   const int reason = errno;

@@ -13,7 +13,8 @@ namespace shoal::mapping {
 void makeFolder(const std::string& folder);
 
 /// Writes a file whole or not at all: to a temporary name in the same folder, flushed, then renamed; then
-/// the folder is flushed, where its file system can. Makes the folder when it is missing.
+/// the folder is flushed, where its file system can. Makes the folder when it is missing. A link goes on
+/// leading to its file, which is the one written. A device, a pipe or /dev/stdout is written into as it is.
 /// @throws std::runtime_error naming the path and what the system said; the temporary file is gone then.
 void writeFileAtomically(const std::string& path, std::string_view content);
 

@@ -9,9 +9,11 @@
 
 #include <cerrno>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -110,6 +112,26 @@ TEST_F(AtomicFileTest, ADiskThatIsFullWhenItClosesLeavesTheFileAsItWas) {
   const std::string what = complaint();
   EXPECT_NE(what.find("cannot write " + path()), std::string::npos) << what;
   EXPECT_NE(what.find("No space left on device"), std::string::npos) << what;
+}
+
+TEST_F(AtomicFileTest, ALinkGoesOnLeadingToTheFile) {
+  const std::string link = folder_ + "/latest.csv";
+  std::filesystem::create_symlink("map.csv", link);
+  writeFileAtomically(link, "after");
+  EXPECT_TRUE(std::filesystem::is_symlink(link));
+  EXPECT_FALSE(std::filesystem::is_symlink(path()));
+  EXPECT_EQ(readFile(path()), "after");
+}
+
+TEST_F(AtomicFileTest, APipeIsWrittenIntoAndStaysOne) {
+  const std::string pipe = folder_ + "/pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  std::string read(5, ' ');
+  std::thread reader([&] { std::ifstream(pipe).read(read.data(), 5); });
+  writeFileAtomically(pipe, "after");
+  reader.join();
+  EXPECT_EQ(read, "after");
+  EXPECT_TRUE(std::filesystem::is_fifo(pipe));
 }
 
 TEST_F(AtomicFileTest, AFolderThatCannotBeFlushedIsNoError) {
