@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fusion_node/mission_file.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <array>
+#include <filesystem>
 #include <fstream>
 #include <stdexcept>
 
@@ -73,6 +77,27 @@ void checkFormat(const std::string& path, sqlite3* database) {
   if (const std::string format = meta(path, database, "format"); format != std::to_string(kFormat)) {
     throw std::runtime_error(path + " has format \"" + format + "\", not 1, the only one known");
   }
+}
+
+// What the node wrote last lies in a file beside it, which only who may write can take in. Without one, who
+// may only read can do so too.
+Database openToRead(const std::string& path) {
+  const auto mayWrite = [](const std::filesystem::path& file) {
+    return ::faccessat(AT_FDCWD, file.c_str(), W_OK, AT_EACCESS) == 0;
+  };
+  std::error_code none;
+  const auto whole = std::filesystem::absolute(path);
+  const bool is_all = std::filesystem::file_size(path + "-wal", none) == 0 || none;
+  if (!is_all || (mayWrite(whole) && mayWrite(whole.parent_path()))) return open(path, SQLITE_OPEN_READWRITE);
+  std::string uri = "file:";
+  for (const char c : whole.string()) {
+    if (c == '%' || c == '?' || c == '#') {
+      uri += c == '%' ? "%25" : c == '?' ? "%3f" : "%23";
+    } else {
+      uri += c;
+    }
+  }
+  return open(uri + "?immutable=1", SQLITE_OPEN_READONLY | SQLITE_OPEN_URI);
 }
 
 }  // namespace
@@ -154,8 +179,7 @@ std::vector<mapping::MissionEvent> MissionFile::events() const {
   return events;
 }
 
-MissionFileReader::MissionFileReader(const std::string& path)
-    : path_(path), database_(open(path, SQLITE_OPEN_READWRITE)) {  // what was not checkpointed is read too
+MissionFileReader::MissionFileReader(const std::string& path) : path_(path), database_(openToRead(path)) {
   checkFormat(path_, database_.get());
   rows_ = prepared(path_, database_.get(), "SELECT wall_us, channel, bytes FROM heard ORDER BY id");
 }

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "fusion_node/mission_file.h"
 #include "operator_console/command.h"
 #include "operator_console/spy.h"
 #include "operator_console/stop_signal.h"
@@ -35,14 +36,22 @@ bool show(const SpyFlags& flags, const Spy& spy, double now_s) {
 
 int spyOnLog(SpyFlags flags, Spy& spy) {
   flags.once = true;
-  comms::LogReader log(flags.log);
   double latest_s = 0;
-  while (const auto event = log.next()) {
-    const double at_s = static_cast<double>(event->time_us) * 1e-6;
-    latest_s = std::max(latest_s, at_s);
-    spy.hear(event->packet, at_s);
+  bool is_heard = false;
+  const auto hearAll = [&](auto log) {
+    while (const auto event = log.next()) {
+      const double at_s = static_cast<double>(event->time_us) * 1e-6;
+      latest_s = std::max(latest_s, at_s);
+      spy.hear(event->packet, at_s);
+      is_heard = true;
+    }
+  };
+  if (fusion_node::isSqlite(flags.log)) {
+    hearAll(fusion_node::MissionFileReader(flags.log));
+  } else {
+    hearAll(comms::LogReader(flags.log));
   }
-  if (log.counts().good == 0) throw std::runtime_error(flags.log + " holds no message; is it an LCM log?");
+  if (!is_heard) throw std::runtime_error(flags.log + " holds no message; is it an LCM log?");
   show(flags, spy, latest_s);
   return 0;
 }

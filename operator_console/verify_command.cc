@@ -2,8 +2,10 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <string>
 
+#include "fusion_node/mission_file.h"
 #include "operator_console/command.h"
 #include "operator_console/verify.h"
 
@@ -25,6 +27,11 @@ void addVerifyCommand(CLI::App& app, Action& chosen) {
       "  operator_console verify runs/a/mission.lcmlog");
   command->callback([&chosen, flags] {
     chosen = [flags] {
+      if (fusion_node::isSqlite(flags->log)) {
+        throw std::invalid_argument(flags->log +
+                                    " is what a node remembers: not all that was sent, so it proves nothing; "
+                                    "give a recording (--record)");
+      }
       const Verification result = verify(flags->log, flags->key);
       std::cout << (flags->json ? result.json().dump(2) + "\n" : result.text());
       return result.wrong().empty() ? 0 : 1;

@@ -88,6 +88,32 @@ TEST_F(NodeMemoryTest, StateClockAndEventsComeBack) {
   EXPECT_EQ(kept, 13u);  // eleven topics, each once, and two heartbeats
 }
 
+TEST_F(NodeMemoryTest, WhoMayOnlyReadCanReadIt) {
+  const std::string dir = dir_ + "/50% of #1?";
+  {
+    MissionState state(kMission, {});
+    NodeMemory memory(dir, "OPERATOR", kMission);
+    for (int i = 0; i < 3; ++i) hear(memory, state, topic(i));
+    memory.commit(state);
+  }
+  const std::string file = missionFilePath(dir, kMission);
+  std::filesystem::permissions(file, std::filesystem::perms{0444});
+  std::filesystem::permissions(dir, std::filesystem::perms{0555});
+  const bool is_root = ::geteuid() == 0;
+  ASSERT_EQ(is_root ? ::seteuid(65534) : 0, 0);
+  size_t kept = 0;
+  std::string complaint;
+  try {
+    for (MissionFileReader reader(file); reader.next();) ++kept;
+  } catch (const std::runtime_error& error) {
+    complaint = error.what();
+  }
+  ASSERT_EQ(is_root ? ::seteuid(0) : 0, 0);
+  std::filesystem::permissions(dir, std::filesystem::perms{0755});
+  EXPECT_EQ(complaint, "");
+  EXPECT_EQ(kept, 3u);
+}
+
 // As files of older builds, and those that somebody wrote into.
 TEST_F(NodeMemoryTest, AClockThatWasMeddledWithIsNotBelieved) {
   const auto recalled = [&](const std::string& key, const std::string& value) {
