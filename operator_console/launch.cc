@@ -51,7 +51,10 @@ constexpr std::chrono::seconds kWriting{60};   // for writing files at the end
 constexpr std::chrono::seconds kStarting{20};  // for the logger and the fusion node to be there
 constexpr milliseconds kLoggerFlush{500};      // lcm-logger flushes every 100 ms
 constexpr milliseconds kLogCheck{2000};        // between two looks at the recording
-constexpr int kMaxCrashes = 3;                 // of one process, unplanned
+constexpr int64_t kThinBudget =
+    50;  // bytes per second with which a mission of some size settles within the hour
+constexpr int64_t kHeartbeatBytes = 210;  // on the wire, about
+constexpr int kMaxCrashes = 3;            // of one process, unplanned
 
 struct Interrupted {
   int signal;
@@ -81,7 +84,11 @@ void refuseOldMission(const LaunchOptions& options) {
     throw std::invalid_argument("--out " + options.out + " holds a finished mission" + choice);
   }
   const auto remains = remainsOf(options.out);
-  if (remains.empty()) return;
+  if (remains.empty()) {
+    const std::string file = fileOfMission(options.out);
+    if (file.empty() || fs::exists(fs::path(options.out) / "logs" / "OPERATOR.log")) return;
+    throw std::invalid_argument("--out " + options.out + " holds a " + file + " of its own" + choice);
+  }
   const std::string ask = howToAsk(options.out);
   throw std::invalid_argument("--out " + options.out + " holds what is left of a mission that did not end (" +
                               joined(remains) + ")" + (ask.empty() ? "" : ", which answers: " + ask) +
@@ -91,14 +98,8 @@ void refuseOldMission(const LaunchOptions& options) {
 // Makes the folder ready: without the files of a mission that was there before.
 void prepareFolder(const LaunchOptions& options) {
   const fs::path out = options.out;
-  if (fs::exists(out / "logs" / "OPERATOR.log") || !remainsOf(options.out).empty()) {
-    for (const std::string_view name :
-         {"robots", "single", "logs", "state", "global_map.csv", "global_map.png", "labels.csv",
-          "summary.json", "summary.html", "edits.json", "library.json", "mission.lcmlog", "pictures",
-          "surprise.csv"}) {
-      fs::remove_all(out / name);
-    }
-  }
+  if (fs::exists(out / "logs" / "OPERATOR.log") || !remainsOf(options.out).empty())
+    removeMission(options.out);
   std::error_code error;
   fs::create_directories(out / "logs", error);
   if (error) throw std::invalid_argument("--out " + options.out + " cannot be made: " + error.message());
@@ -448,6 +449,11 @@ int launch(LaunchOptions options) {
   std::vector<KillStep> plan;
   if (!options.kill_plan.empty()) plan = readKillPlan(options.kill_plan, options.num_robots);
   const double carried = comms::readLink(options.link).rate_bytes_per_s;
+  if (options.budget > 0 && options.budget < kThinBudget) {
+    spdlog::warn(
+        "{} bytes per second carry a heartbeat in {} s and little else: the mission takes hours to settle",
+        options.budget, kHeartbeatBytes * 10 / options.budget);
+  }
   if (carried > 0 && (options.budget == 0 || static_cast<double>(options.budget) > carried)) {
     spdlog::warn("a link of {} carries {} bytes per second and loses what is above; --budget {:.0f} fits it",
                  options.link, carried, std::floor(carried));

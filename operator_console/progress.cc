@@ -17,6 +17,10 @@ namespace {
 constexpr size_t kRobotWidth = 46;
 constexpr size_t kMaxBar = 40;
 
+// Where there is no terminal.
+constexpr double kSaidEveryS = 60;
+constexpr size_t kLineWidth = 120;
+
 std::string bytesText(int64_t bytes) {
   return bytes < 100'000 ? fmt::format("{} B", bytes)
                          : fmt::format("{:.1f} kB", static_cast<double>(bytes) / 1000);
@@ -78,7 +82,12 @@ std::string erasing(size_t lines) { return lines > 0 ? fmt::format("\r\033[{}A\0
 TerminalBlock::TerminalBlock() : is_terminal_(isatty(STDERR_FILENO) == 1) {}
 
 void TerminalBlock::draw(const MissionProgress& progress) {
-  if (!is_terminal_) return;
+  if (!is_terminal_) {
+    if (progress.elapsed_s - said_s_ < kSaidEveryS) return;
+    said_s_ = progress.elapsed_s;
+    std::fprintf(stderr, "%s\n", progressLines(progress, kLineWidth, 2).back().c_str());
+    return;
+  }
   winsize size{};
   const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1 && size.ws_row > 1;
   const auto lines = progressLines(progress, known ? size.ws_col - 1u : 79, known ? size.ws_row - 1u : 24);

@@ -27,7 +27,8 @@ std::vector<std::string> progressLines(const MissionProgress& progress, size_t w
 /// What takes the last `lines` lines away from a terminal, wherever in the line below them it stands.
 std::string erasing(size_t lines);
 
-/// Draws lines over those drawn before, on stderr. Does nothing when stderr is no terminal.
+/// Draws lines over those drawn before, on stderr. When that is no terminal, says the bar's line once a
+/// minute.
 class TerminalBlock {
  public:
   TerminalBlock();
@@ -40,6 +41,7 @@ class TerminalBlock {
  private:
   bool is_terminal_;
   size_t drawn_ = 0;
+  double said_s_ = 0;  // elapsed when the bar's line was said
 };
 
 }  // namespace shoal::console

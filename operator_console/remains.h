@@ -10,6 +10,13 @@ namespace shoal::console {
 /// state/ that nodes remember it by; paths from `dir`, in that order.
 std::vector<std::string> remainsOf(const std::string& dir);
 
+/// Removes what a mission writes from a folder, and the folders that are then empty. What is not of its names
+/// stays: somebody keeps it there.
+void removeMission(const std::string& dir);
+
+/// The first of the files that a mission is to write into a folder, if one is there already; else empty.
+std::string fileOfMission(const std::string& dir);
+
 /// How to ask what is left of a mission that did not end: a command line for the recording, else for what a
 /// node remembers. Empty without either.
 std::string howToAsk(const std::string& dir);

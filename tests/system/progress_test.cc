@@ -23,6 +23,21 @@ TEST(ProgressLinesTest, ShowEveryRobotAndOneBarWithTheTimeItWillTake) {
   EXPECT_EQ(lines[2].substr(0, 58), "[##########..............................]  25 %  10/40 fr");
 }
 
+TEST(TerminalBlockTest, WithoutATerminalTheBarIsSaidOnceAMinute) {
+  const std::map<std::string, wire::Heartbeat> nodes;
+  TerminalBlock block;
+  if (block.isTerminal()) GTEST_SKIP() << "stderr is a terminal";
+  std::string said;
+  for (double elapsed_s = 0; elapsed_s < 130; elapsed_s += 0.25) {
+    testing::internal::CaptureStderr();
+    block.draw(
+        {.num_robots = 3, .observations = 8, .elapsed_s = elapsed_s, .doing = "flying", .nodes = &nodes});
+    said += testing::internal::GetCapturedStderr();
+  }
+  const std::string bar = "[........................................]   0 %  0/24 frames  ";
+  EXPECT_EQ(said, bar + "1:00  flying\n" + bar + "2:00  flying\n");
+}
+
 TEST(TerminalBlockTest, IsErasedFromTheBeginningOfALine) {
   EXPECT_EQ(erasing(3), "\r\033[3A\033[J");  // ^C may have moved the cursor
   EXPECT_EQ(erasing(0), "");
