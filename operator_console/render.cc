@@ -17,7 +17,9 @@ namespace shoal::console {
 namespace {
 
 constexpr int kMapPixels = 720;    // long side of a map
-constexpr int kLegendWidth = 300;  // pixels
+constexpr int kLegendWidth = 300;  // pixels, at least
+constexpr int kMostTextWidth = 380;
+constexpr double kTextSize = 0.45;
 constexpr int kMargin = 16;
 constexpr int kTitleHeight = 34;
 constexpr int kRowHeight = 24;
@@ -72,6 +74,28 @@ struct LegendRow {
   cv::Mat picture = {};
 };
 
+int widthOf(const std::string& text) {
+  int below = 0;
+  return cv::getTextSize(text, cv::FONT_HERSHEY_SIMPLEX, kTextSize, 1, &below).width;
+}
+
+// OpenCV's letters are those of ASCII: a label with a name in others goes by its number here.
+std::string drawableName(const mapping::LabelSummary& label) {
+  const bool is_drawable = std::ranges::all_of(label.name, [](char c) { return c >= ' ' && c <= '~'; });
+  return label.name.empty() || !is_drawable ? std::to_string(number(label.label)) : label.name;
+}
+
+// The name, and what is said of the label, in a width that there is room for.
+std::string fitting(std::string name, const std::string& said) {
+  if (widthOf(name + said) <= kMostTextWidth) return name + said;
+  while (!name.empty() && widthOf(name + ".." + said) > kMostTextWidth) name.pop_back();
+  return name + ".." + said;
+}
+
+std::string percent(double share) {
+  return share > 0 && share < 0.0005 ? "< 0.1 %" : mapping::fixed(share * 100, 1) + " %";
+}
+
 std::vector<LegendRow> legendOf(const mapping::GlobalMap& map, const world::Grid& grid,
                                 const std::map<world::GlobalLabel, Rgb>& colors,
                                 const LegendPictures& pictures, size_t most_rows) {
@@ -89,16 +113,19 @@ std::vector<LegendRow> legendOf(const mapping::GlobalMap& map, const world::Grid
     }
     const auto area = areas.find(label.label);
     const double share = area == areas.end() || total <= 0 ? 0 : area->second / total;
-    rows.push_back({colors.at(label.label),
-                    (label.name.empty() ? std::to_string(number(label.label)) : label.name) + "  " +
-                        mapping::fixed(share * 100, 1) + " %  " + std::to_string(label.robots.size()) +
-                        (label.robots.size() == 1 ? " robot" : " robots")});
+    rows.push_back(
+        {colors.at(label.label),
+         fitting(drawableName(label), "  " + percent(share) + "  " + std::to_string(label.robots.size()) +
+                                          (label.robots.size() == 1 ? " robot" : " robots"))});
     if (const auto shown = pictures.find(label.label); shown != pictures.end()) {
       rows.back().picture = shown->second;
     }
   }
   return rows;
 }
+
+// Where the text of a row begins.
+int indentOf(int row_height) { return row_height == kRowHeight ? 28 : 66; }
 
 void drawLegend(cv::Mat& picture, cv::Point at, const std::string& heading,
                 const std::vector<LegendRow>& rows, int row_height = kRowHeight) {
@@ -108,13 +135,12 @@ void drawLegend(cv::Mat& picture, cv::Point at, const std::string& heading,
     const cv::Point corner = at + cv::Point(0, 26 + static_cast<int>(i) * row_height + lift);
     cv::rectangle(picture, {corner, cv::Size(18, 16)}, bgr(rows[i].color), cv::FILLED);
     cv::rectangle(picture, {corner, cv::Size(18, 16)}, kInk, 1);
-    const int indent = row_height == kRowHeight ? 28 : 66;
     if (!rows[i].picture.empty()) {
       const cv::Rect place(corner + cv::Point(26, 8 - rows[i].picture.rows / 2), rows[i].picture.size());
       rows[i].picture.copyTo(picture(place));
       cv::rectangle(picture, place, kInk, 1);
     }
-    write(picture, rows[i].text, corner + cv::Point(indent, 13), 0.45);
+    write(picture, rows[i].text, corner + cv::Point(indentOf(row_height), 13), kTextSize);
   }
 }
 
@@ -226,9 +252,14 @@ cv::Mat render(const mapping::GlobalMap& map, const world::Grid& grid, const std
   const auto rows = legendOf(map, grid, colors, pictures, static_cast<size_t>(most_rows));
 
   const int legend_height = beside + static_cast<int>(rows.size()) * row_height;
+  int legend_width = kLegendWidth;
+  for (const LegendRow& row : rows)
+    legend_width = std::max(legend_width, indentOf(row_height) + widthOf(row.text) + kMargin);
+  for (const LegendRow& row : class_rows)
+    legend_width = std::max(legend_width, indentOf(kRowHeight) + widthOf(row.text) + kMargin);
   const int maps = truth ? 2 : 1;
   cv::Mat picture(kTitleHeight + std::max(map_height, legend_height) + 2 * kMargin,
-                  maps * (map_width + kMargin) + kLegendWidth + kMargin, CV_8UC3, kPaper);
+                  maps * (map_width + kMargin) + legend_width + kMargin, CV_8UC3, kPaper);
   write(picture, title, {kMargin, kTitleHeight - 8}, 0.6);
   const int top = kTitleHeight + kMargin;
   fused_picture.copyTo(picture({kMargin, top, map_width, map_height}));

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 #include <Eigen/Core>
+#include <opencv2/core.hpp>
 
 namespace shoal::console {
 namespace {
@@ -109,6 +110,25 @@ TEST(RenderTest, TheLegendIsAsHighAsTheMapOrNamesEight) {
   EXPECT_EQ(high.rows, 34 + 720 + 2 * 16);
   EXPECT_TRUE(shows(high, 16));
   EXPECT_FALSE(shows(high, 20));
+}
+
+TEST(RenderTest, NoNameIsCutAtThePicturesEdge) {
+  mapping::GlobalMap map;
+  for (int i = 0; i < 4; ++i) map.cells.push_back(cell(i, 0, 0, 5));
+  map.labels = {{GlobalLabel{5}, "", 4, {}, {0}}};
+  const auto named = [&](const std::string& name) {
+    map.labels[0].name = name;
+    return render(map, world::Grid(1.0), "t");
+  };
+  const cv::Mat plain = named("");
+  for (const std::string& name : {std::string("bed of large mussels"), std::string(64, 'W')}) {
+    const cv::Mat picture = named(name);
+    EXPECT_GT(picture.cols, plain.cols) << name;
+    EXPECT_LT(picture.cols, plain.cols + 200) << name;
+    const cv::Mat edge = picture.colRange(picture.cols - 10, picture.cols);
+    EXPECT_EQ(cv::norm(edge, cv::Mat(edge.size(), edge.type(), cv::Scalar::all(250))), 0) << name;  // paper
+  }
+  EXPECT_EQ(encodePng(named("Gr\u00fc\u00dfe")), encodePng(plain));  // it goes by its number
 }
 
 TEST(RenderTest, AnEmptyMapSaysSo) {
