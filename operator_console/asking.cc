@@ -37,6 +37,8 @@ Where whereOf(const Asking& asking) {
   where.matcher.sigma = matching::parseSigma(asking.sigma);
   where.matcher.similarity =
       asking.similarity.empty() ? matching::usualSimilarity(where.matcher.matcher) : asking.similarity;
+  matching::match(matching::DescriptorSet{},
+                  where.matcher);  // an unknown one is refused, also where none is needed
   return where;
 }
 

@@ -51,9 +51,7 @@ void evaluate(const EvaluateFlags& flags) {
     }
   }();
   const world::SurveyOptions team = teamOf(summary);
-  if (const std::string flown = summary.value("world", flags.world); nameOf(flown) != nameOf(flags.world))
-    std::cerr << flags.run << " was flown over " << flown << "; this scores it against " << flags.world
-              << '\n';
+  warnOfOtherWorld(flags.run, summary, flags.world);
   const auto place = world::openPlace(flags.world, summary.at("seed").get<uint64_t>(), cameraOf(summary));
   std::vector<matching::MatcherOptions> matchers = eval::allMatchers();
   if (flags.matcher != "all") {
@@ -77,6 +75,12 @@ void evaluate(const EvaluateFlags& flags) {
 }
 
 }  // namespace
+
+void warnOfOtherWorld(const std::string& run, const Json& summary, const std::string& world) {
+  const std::string flown = summary.value("world", world);
+  if (nameOf(flown) != nameOf(world))
+    std::cerr << run << " was flown over " << flown << "; this scores it against " << world << '\n';
+}
 
 Json Evaluation::json() const {
   const eval::Score& first = scores.at(0);

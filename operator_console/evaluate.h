@@ -34,6 +34,10 @@ world::SurveyOptions teamOf(const nlohmann::ordered_json& summary);
 /// The camera that it was given besides those of the place, if any, from its summary.json.
 std::optional<world::Camera> cameraOf(const nlohmann::ordered_json& summary);
 
+/// Says on stderr when a run, by its summary.json, was flown over another world than it is scored against.
+void warnOfOtherWorld(const std::string& run, const nlohmann::ordered_json& summary,
+                      const std::string& world);
+
 /// Scores a run's local maps under each option set. `place` must outlive the result, whose truth asks it.
 /// @param team  as it flew: completed() for that place.
 /// @throws std::runtime_error naming what is missing or broken in the run.

@@ -107,8 +107,7 @@ Export exported(const Where& where, const std::string& format, const std::string
   if (origin && wants == Origin::kNone)
     throw std::invalid_argument(format + " is in metres of the mission frame: it takes no origin on Earth");
   if (!origin && wants == Origin::kNeeded)
-    throw std::invalid_argument(format +
-                                " is in degrees: say where (0, 0) was, origin latitude and longitude");
+    throw std::invalid_argument(format + " is in degrees: say where (0, 0) was, --origin LATITUDE LONGITUDE");
   std::optional<GeoFrame> earth;
   if (origin) earth.emplace(*origin);
   const GeoFrame* frame = earth ? &*earth : nullptr;

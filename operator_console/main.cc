@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <poll.h>
+#include <unistd.h>
+
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <exception>
+#include <iostream>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -14,6 +20,22 @@
 #include "operator_console/config_file.h"
 #include "operator_console/mistake.h"
 #include "shoal/version.h"
+
+namespace {
+
+// A full disk is an error; a reader that has enough, as head has, is none.
+void checkThatAllWasSaid() {
+  errno = 0;
+  const bool is_said = static_cast<bool>(std::cout.flush()) && std::fflush(stdout) == 0;
+  const int reason = errno;
+  if (is_said && std::ferror(stdout) == 0) return;
+  pollfd out{STDOUT_FILENO, POLLOUT, 0};
+  if (::poll(&out, 1, 0) == 1 && (out.revents & POLLERR) != 0) return;
+  throw std::runtime_error("cannot write all of the answer" +
+                           (reason == 0 ? "" : std::string(": ") + std::strerror(reason)));
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   using namespace shoal;  // NOLINT: a main file
@@ -66,7 +88,9 @@ int main(int argc, char** argv) {
   try {
     fusion_node::setUpLog("console", log_level);
     for (const std::string& typo : fusion_node::likelyTypos(app)) spdlog::warn("{}", typo);
-    return chosen();
+    const int status = chosen();
+    checkThatAllWasSaid();
+    return status;
   } catch (const std::invalid_argument& error) {
     std::fprintf(stderr, "operator_console: %s\n", error.what());
     return 2;

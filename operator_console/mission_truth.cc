@@ -55,6 +55,7 @@ MissionTruth truthOf(const Where& where, const mapping::MissionView& view, const
     camera = cameraOf(summary);
   }
   const std::string world = worldOf(where, hint);
+  if (!where.run.empty()) warnOfOtherWorld(where.run, summaryOf(where.run), world);
   const std::shared_ptr<const world::Place> place = world::openPlace(world, seed, camera);
   if (place->classes().empty()) throw std::runtime_error(world + " has no labels: its truth is not known");
   return {place,

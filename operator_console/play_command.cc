@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <filesystem>
 #include <memory>
+#include <stdexcept>
 #include <string>
 
 #include <spdlog/spdlog.h>
@@ -27,6 +29,7 @@ int playFolder(const PlayFlags& flags) {
   const double rate = fusion_node::parseRate(flags.rate);
   comms::LcmBus bus(flags.lcm_url, options);
   catchStopSignals();
+  if (!std::filesystem::is_directory(flags.folder)) throw std::runtime_error(flags.folder + " is no folder");
   spdlog::info("plays {} as {}_IMAGE, _DEPTH and _POSE on {}", flags.folder, flags.prefix, bus.url());
   const Played played = play(flags.folder, flags.prefix, rate, bus);
   spdlog::info("said {} images, {} depth images and {} poses", played.images, played.depths, played.poses);

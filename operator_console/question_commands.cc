@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
@@ -66,6 +67,8 @@ void labels(Question& q) {
 }
 
 void at(Question& q) {
+  if (!std::isfinite(q.x) || !std::isfinite(q.y))
+    throw std::invalid_argument("X and Y must be metres, finite");
   const Json a = answerTo(q.asking, {{"query", "at"}, {"x", q.x}, {"y", q.y}});
   if (q.asking.json) {
     std::cout << a.dump(2) << '\n';

@@ -92,7 +92,7 @@ Library parseLibrary(const std::string& text, const std::string& path) {
     if (twice != library.topics.end()) throw std::invalid_argument("\"" + twice->name + "\" is there twice");
     return library;
   } catch (const Json::exception& error) {
-    throw std::runtime_error(path + ": " + error.what());
+    throw std::runtime_error(path + " is no library as `library save` writes it: " + error.what());
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(path + ": " + error.what());
   }

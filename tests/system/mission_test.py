@@ -241,10 +241,19 @@ class Mission(unittest.TestCase):
             self.assertEqual(read(os.path.join(once, path)), read(os.path.join(self.a, path)))
         self.assertNotEqual(read(os.path.join(once, "global_map.csv")), read(os.path.join(self.a, "global_map.csv")))
 
+    def test_a_file_of_somebody_elses_is_not_written_over(self):
+        own = os.path.join(self.top, "own")
+        os.makedirs(own)
+        with open(os.path.join(own, "summary.html"), "w", encoding="utf-8") as file:
+            file.write("mine")
+        self.assertIn("holds a summary.html of its own", run(CONSOLE, "launch", "--world", "reef:tuning", *SIZE, "--out", own, expect=2).stderr)
+        self.assertEqual(read(os.path.join(own, "summary.html")), b"mine")
+
     def test_another_seed_gives_another_map_and_nothing_is_left_of_the_old(self):
         c = os.path.join(self.top, "c")
         old = ["logs/OPERATOR.log", "mission.lcmlog", "pictures/99.png", "surprise.csv"]
-        for path in old:
+        foreign = ["robots/notes.txt", "robots/R00/notes.txt", "pictures/reef.png", "notes/map.csv", "state/maps/7.png"]
+        for path in old + foreign:
             os.makedirs(os.path.dirname(os.path.join(c, path)), exist_ok=True)
             with open(os.path.join(c, path), "w", encoding="utf-8") as file:
                 file.write("old")
@@ -254,6 +263,9 @@ class Mission(unittest.TestCase):
         for path in old:
             if os.path.exists(os.path.join(c, path)):
                 self.assertNotEqual(read(os.path.join(c, path)), b"old", path)
+        self.assertFalse(os.path.exists(os.path.join(c, "pictures/99.png")))
+        for path in foreign:
+            self.assertEqual(read(os.path.join(c, path)), b"old", path)
         self.assertNotEqual(read(os.path.join(self.a, "global_map.csv")), read(os.path.join(c, "global_map.csv")))
 
     def test_evaluate_agrees_with_the_summary(self):
@@ -453,6 +465,13 @@ class Mission(unittest.TestCase):
             done = run(CONSOLE, *arguments, expect=code)
             self.assertEqual(done.stdout, "", arguments)
             self.assertTrue(done.stderr.strip(), arguments)
+        for command in ("labels", "status", "evaluate"):
+            more = ["--world", "reef:tuning"] if command == "evaluate" else []
+            with open("/dev/full", "w", encoding="utf-8") as full:
+                done = subprocess.run([CONSOLE, command, "--run", self.a, "--json", *more], stdout=full, stderr=subprocess.PIPE,
+                                      text=True, timeout=60, check=False)
+            self.assertEqual(done.returncode, 1, command)
+            self.assertIn("cannot write all of the answer: No space left on device", done.stderr)
         world = os.path.join(self.top, "world")
         os.makedirs(world)
         with open(os.path.join(world, "world.json"), "w", encoding="utf-8") as file:
