@@ -471,7 +471,7 @@ class Mission(unittest.TestCase):
                 done = subprocess.run([CONSOLE, command, "--run", self.a, "--json", *more], stdout=full, stderr=subprocess.PIPE,
                                       text=True, timeout=60, check=False)
             self.assertEqual(done.returncode, 1, command)
-            self.assertIn("cannot write all of the answer: No space left on device", done.stderr)
+            self.assertIn("cannot write all of the answer", done.stderr)
         world = os.path.join(self.top, "world")
         os.makedirs(world)
         with open(os.path.join(world, "world.json"), "w", encoding="utf-8") as file:
