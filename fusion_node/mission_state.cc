@@ -9,6 +9,7 @@
 #include "fusion_node/authentication.h"
 #include "fusion_node/limits.h"
 #include "shoal/comms/channels.h"
+#include "shoal/comms/sender.h"
 #include "shoal/mapping/common_settings.h"
 #include "shoal/mapping/judgement.h"
 #include "shoal/wire/message_kind.h"
@@ -70,6 +71,7 @@ mapping::NodeStatus statusOf(const std::string& node, const wire::Heartbeat& h, 
           .bytes_sent = h.bytes_sent,
           .budget = h.budget,
           .queue_bytes = h.queue_bytes,
+          .clear_s = h.budget > 0 ? h.queue_bytes / comms::contentPerSecond(h.budget) : 0,
           .ms_per_frame = h.ms_per_frame,
           .x_m = h.x_m,
           .y_m = h.y_m,

@@ -9,6 +9,7 @@
 #include "fusion_node/repair.h"
 #include "shoal/comms/channels.h"
 #include "shoal/comms/packet.h"
+#include "shoal/comms/sender.h"
 #include "shoal/mapping/area_answer.h"
 #include "shoal/wire/picture_pieces.h"
 #include "shoal/wire/piece_codec.h"
@@ -18,8 +19,6 @@ namespace shoal::fusion_node {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr double kHeartbeatShare = 0.2;  // of a budget, at most
 
 std::string topicName(const mapping::HeldPicture& p) {
   return name(p.robot) + " example " + std::to_string(number(p.topic));
@@ -82,7 +81,7 @@ bool isSharp(const mapping::HeldPicture& picture) {
 }
 
 double secondsOf(double bytes, int64_t budget) {
-  return budget == 0 ? 0 : bytes / (static_cast<double>(budget) * (1 - kHeartbeatShare));
+  return budget == 0 ? 0 : bytes / comms::contentPerSecond(budget);
 }
 
 // Nobody knows how much a robot will yet say before it answers: pictures that are new by then stand before

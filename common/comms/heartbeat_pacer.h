@@ -13,6 +13,7 @@ namespace shoal::comms {
 class HeartbeatPacer {
  public:
   static constexpr int64_t kIntervalUs = 1'000'000;
+  static constexpr double kShareBesideContent = 0.1;  ///< of the budget, at most
 
   /// @param bytes_per_s  The whole budget, 0 = unlimited. The first heartbeat is due at once.
   HeartbeatPacer(int64_t bytes_per_s, int64_t first_due_us)

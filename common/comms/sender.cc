@@ -19,6 +19,12 @@ constexpr size_t kBacklogTrials = 4;  // datagrams that are made to know what th
 
 }  // namespace
 
+double contentPerSecond(int64_t bytes_per_s) {
+  const auto fit = std::max<int64_t>(1, bytes_per_s / static_cast<int64_t>(kMaxWireBytes));
+  const auto carried = static_cast<double>(fit) / static_cast<double>(fit + 1);
+  return static_cast<double>(bytes_per_s) * (carried - HeartbeatPacer::kShareBesideContent);
+}
+
 Sender::Sender(Bus& link, Bus* local, SenderOptions options)
     : options_(std::move(options)),
       link_(link),

@@ -40,6 +40,10 @@ struct SenderOptions {
   size_t most_joined_bytes = 0;  ///< of a message that join() made; longer ones are not sent
 };
 
+/// Bytes of content on the wire that a budget surely lets say in a second of mission time, beside heartbeats:
+/// what windows carry of full datagrams (Budget), less the tenth that heartbeats take. 0 = unlimited.
+double contentPerSecond(int64_t bytes_per_s);
+
 /// The single choke point: everything a node sends passes here, is counted, and on the link kept in budget.
 /// Order: a heartbeat when due, then SendQueue's. Who is first waits for the budget and nothing smaller
 /// overtakes. While content waits, no heartbeat follows another: on a thin link, a large datagram would never

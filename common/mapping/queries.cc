@@ -34,7 +34,7 @@ Json toJson(const NodeStatus& n) {
           {"class_bytes", n.class_bytes},
           {"budget", n.budget},
           {"queue_bytes", n.queue_bytes},
-          {"clear_s", rounded(n.clearSeconds(), 1e1)},
+          {"clear_s", rounded(n.clear_s, 1e1)},
           {"ms_per_frame", rounded(n.ms_per_frame, 1e2)},
           {"position_m", {rounded(n.x_m, 1e3), rounded(n.y_m, 1e3), rounded(n.z_m, 1e3)}},
           {"rejected", n.rejected},
@@ -60,6 +60,7 @@ NodeStatus nodeFromJson(const Json& json) {
   json.at("bytes_sent").get_to(n.bytes_sent);
   json.at("budget").get_to(n.budget);
   json.at("queue_bytes").get_to(n.queue_bytes);
+  json.at("clear_s").get_to(n.clear_s);
   json.at("ms_per_frame").get_to(n.ms_per_frame);
   json.at("position_m").at(0).get_to(n.x_m);
   json.at("position_m").at(1).get_to(n.y_m);

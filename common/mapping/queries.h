@@ -28,7 +28,7 @@ struct NodeStatus {
   int32_t budget = 0;       ///< bytes per second of mission time, 0 = unlimited
   int32_t queue_bytes = 0;  ///< waiting to be sent
   /// Seconds of mission time in which its budget lets it say what waits; 0 without a budget.
-  double clearSeconds() const { return budget > 0 ? static_cast<double>(queue_bytes) / budget : 0.0; }
+  double clear_s = 0;
   float ms_per_frame = 0;
   float x_m = 0, y_m = 0, z_m = 0;  ///< position of the camera, world
   int32_t rejected = 0, conflicts = 0;

@@ -89,6 +89,29 @@ TEST(SenderTest, StaysInBudgetAndUsesIt) {
   }
 }
 
+// Full datagrams, which windows carry the least of, and pieces of any size.
+TEST(SenderTest, SaysAtLeastSoMuchContentASecond) {
+  for (const int64_t bytes_per_s : {50, 200, 1000, 2000, 5000, 20000})
+    for (const bool is_full : {true, false}) {
+      SCOPED_TRACE(std::to_string(bytes_per_s) + (is_full ? " full" : " of any size"));
+      Node node({.bytes_per_s = bytes_per_s,
+                 .make_heartbeat = [](int64_t) { return packet("SHOAL_R00_HEARTBEAT", 150); }});
+      Random random(3);
+      const int64_t end_us = 600'000'000'000 / bytes_per_s;
+      int n = 0;
+      for (int64_t now_us = 0; now_us < end_us;) {
+        while (node.sender->queue().numWaiting(TrafficClass::kBricks) < 5) {
+          const size_t size = is_full ? kMaxMessageBytes - 11 : 20 + random.below(1300);
+          node.sender->offer(TrafficClass::kBricks, std::to_string(n++), packet("SHOAL_R00_B", size));
+        }
+        now_us = node.sender->pump(now_us);
+        node.heard();
+      }
+      const auto content = static_cast<double>(node.sender->stats().of(TrafficClass::kBricks).bytes);
+      EXPECT_GT(content * 1e6 / static_cast<double>(end_us), 0.97 * contentPerSecond(bytes_per_s));
+    }
+}
+
 TEST(SenderTest, BeatsOnceASecondWhenTheBudgetAllows) {
   std::vector<int64_t> beats;
   Node node({.make_heartbeat = [&](int64_t now_us) {

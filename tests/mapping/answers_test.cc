@@ -65,15 +65,6 @@ class AnswersTest : public testing::Test {
   MissionView view_;
 };
 
-TEST(NodeStatusTest, TheTimeToClearIsTheBacklogOverTheBudget) {
-  NodeStatus node;
-  node.queue_bytes = 5000;
-  EXPECT_EQ(toJson(node)["clear_s"], 0.0);  // without a budget nothing waits long
-  node.budget = 2000;
-  EXPECT_EQ(toJson(node)["clear_s"], 2.5);
-  EXPECT_EQ(nodeFromJson(toJson(node)).clearSeconds(), 2.5);
-}
-
 TEST_F(AnswersTest, AreaTellsPatchesWithTheirOutlines) {
   const Json a = ask({{"query", "area"}, {"label", "4"}});
   EXPECT_EQ(a["label"], 4);  // robot 0's topic 4 is the oldest of its cluster

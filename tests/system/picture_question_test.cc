@@ -48,6 +48,16 @@ class PictureQuestionTest : public testing::Test {
   comms::Stats stats_;
 };
 
+TEST_F(PictureQuestionTest, TheTimeToClearIsTheBacklogByWhatTheBudgetCarries) {
+  wire::Heartbeat h;
+  h.queue_bytes = 5000;
+  EXPECT_EQ(statusOf("R03", h, true, {}).clear_s, 0);  // without a budget nothing waits long
+  h.budget = 2000;
+  EXPECT_NEAR(statusOf("R03", h, true, {}).clear_s, 5000 / (1000. - 200), 1e-9);
+  h.budget = 10'000;  // seven full datagrams a second
+  EXPECT_NEAR(statusOf("R03", h, true, {}).clear_s, 5000 / (8750. - 1000), 1e-9);
+}
+
 TEST_F(PictureQuestionTest, ThereIsABoundOnTheTimeOnceARobotHasNothingNewToTell) {
   EXPECT_EQ(price()["state"], "not sharp");
   EXPECT_TRUE(price()["seconds"].is_null());
@@ -58,9 +68,10 @@ TEST_F(PictureQuestionTest, ThereIsABoundOnTheTimeOnceARobotHasNothingNewToTell)
   beat(30, wire::Phase::kListening);
   EXPECT_TRUE(price()["seconds"].is_null());
   beat(40, wire::Phase::kLanded);
-  // Heartbeats take a fifth of each budget.
+  // One full datagram fits a second of these budgets: windows carry half of them, of which heartbeats take a
+  // fifth.
   const double request = price()["bytes"]["request"], answer = price()["bytes"]["answer"];
-  EXPECT_NEAR(price()["seconds"], request / 800 + (3000 + answer) / 400, 0.1);
+  EXPECT_NEAR(price()["seconds"], request / 400 + (3000 + answer) / 200, 0.1);
 }
 
 }  // namespace
