@@ -100,8 +100,8 @@ TEST(SenderTest, SaysAtLeastSoMuchContentASecond) {
       const int64_t end_us = 600'000'000'000 / bytes_per_s;
       int n = 0;
       for (int64_t now_us = 0; now_us < end_us;) {
-        while (node.sender->queue().numWaiting(TrafficClass::kBricks) < 5) {
-          const size_t size = is_full ? kMaxMessageBytes - 11 : 20 + random.below(1300);
+        while (node.sender->queue().numWaiting(TrafficClass::kBricks) < 1100) {
+          const size_t size = is_full ? kMaxMessageBytes - 20 : 20 + random.below(1300);
           node.sender->offer(TrafficClass::kBricks, std::to_string(n++), packet("SHOAL_R00_B", size));
         }
         now_us = node.sender->pump(now_us);
