@@ -60,7 +60,7 @@ NodeStatus nodeFromJson(const Json& json) {
   json.at("bytes_sent").get_to(n.bytes_sent);
   json.at("budget").get_to(n.budget);
   json.at("queue_bytes").get_to(n.queue_bytes);
-  json.at("clear_s").get_to(n.clear_s);
+  n.clear_s = json.value("clear_s", 0.0);
   json.at("ms_per_frame").get_to(n.ms_per_frame);
   json.at("position_m").at(0).get_to(n.x_m);
   json.at("position_m").at(1).get_to(n.y_m);
